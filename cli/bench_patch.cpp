@@ -127,7 +127,7 @@ Result<std::optional<BenchPatch>> try_patch(const document::Document& opened, me
   patch.centre = centre;
   patch.selected = selected.generations[selected.cursor];
   patch.lift.shaping.grab = generation.model.node_ids[centre.value];
-  Result<document::Drag> drag = document::Drag::begin(patch.selected, selected.settings, patch.lift);
+  Result<document::Drag> drag = document::Drag::begin(patch.selected, patch.lift);
   if (!drag) {
     const auto refused = document::prepare(selected, patch.lift);  // names the card as well
     return fail(refused ? drag.error() : refused.error());

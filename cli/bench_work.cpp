@@ -100,7 +100,7 @@ Result<Timing> measure_drag_begin(Bench& bench, BenchFigure& figure) {
   TimedWork work;
   work.prepare = [&] { drag.reset(); };
   work.run = [&]() -> Result<void> {
-    Result<document::Drag> begun = document::Drag::begin(bench.patch.selected, bench.selected.settings, bench.patch.lift);
+    Result<document::Drag> begun = document::Drag::begin(bench.patch.selected, bench.patch.lift);
     if (!begun) return fail(std::move(begun.error()));
     drag = std::move(*begun);
     return {};
@@ -110,7 +110,7 @@ Result<Timing> measure_drag_begin(Bench& bench, BenchFigure& figure) {
 }
 
 Result<Timing> measure_drag_step(Bench& bench, BenchFigure& figure) {
-  Result<document::Drag> drag = document::Drag::begin(bench.patch.selected, bench.selected.settings, bench.patch.lift);
+  Result<document::Drag> drag = document::Drag::begin(bench.patch.selected, bench.patch.lift);
   if (!drag) return fail(std::move(drag.error()));
   int step = 0;
   document::Displacement displacement;

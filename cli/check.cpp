@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cstring>
 #include <iomanip>
 #include <ostream>
 
@@ -64,14 +65,21 @@ void print_parts(std::ostream& out, const mesh::document::Document& document, co
   const mesh::Model& model = document.current().model;
   const mesh::document::Judging& judging = *document.current().judging;
   if (parts.empty()) return;
-  out << "part          shells    warn    fail  tri %    composite min    mean    size  name\n";
+  // Criteria have a column where parts have their own.
+  const bool differ =
+      std::any_of(judging.parts.begin(), judging.parts.end(), [](const mesh::document::PartChoice& choice) { return choice.criteria; });
+  std::size_t width = 0;
+  const auto criteria_of = [&](mesh::PartIndex of) { return printable(judged_by(document).of(of).criteria.name); };
+  for (const quality::PartReport& each : parts) width = std::max({width, criteria_of(each.part).size(), std::strlen("criteria")});
+  const auto column = [&](const std::string& text) { return differ ? "  " + text + std::string(width - text.size(), ' ') : ""; };
+  out << "part          shells    warn    fail  tri %    composite min    mean    size" << column("criteria") << "  name\n";
   for (std::size_t i = 0; i < std::min(parts.size(), kPartsShown); ++i) {
     const quality::Report& report = parts[i].report;
     const mesh::Part& part = (*model.parts)[parts[i].part.value];
     out << std::left << std::setw(10) << part.id << std::right << std::setw(10) << report.elements << std::setw(8) << report.counts.warn
         << std::setw(8) << report.counts.fail << std::setw(7) << std::setprecision(3) << report.triangles_percent << std::setw(17)
         << report.min_composite << std::setw(8) << report.mean_composite << std::setprecision(6) << std::setw(8)
-        << judging.by_part.of(parts[i].part).target_size << "  " << printable(part.name) << '\n';
+        << judging.by_part.of(parts[i].part).target_size << column(criteria_of(parts[i].part)) << "  " << printable(part.name) << '\n';
   }
   if (parts.size() > kPartsShown) out << "and " << parts.size() - kPartsShown << " more parts; all are in the JSON\n";
 }

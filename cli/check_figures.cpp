@@ -66,7 +66,7 @@ quality::Grade grade_of_triangles(double percent, const quality::Criteria& crite
 
 CheckFigures check_figures(const mesh::document::Document& document, const mesh::ShellSet* shells, bool chordal) {
   const mesh::Model& model = document.current().model;
-  const quality::Criteria& criteria = document.settings.criteria;
+  const quality::Criteria& criteria = *document.current().judging->criteria.criteria;
   const quality::SizedCriteria sized = mesh::document::judged_by(document);
   const mesh::TimeStepControl& control = document.deck->time_step;
   CheckFigures figures;

@@ -135,7 +135,7 @@ std::string check_json(const document::Document& document, const CheckFigures& f
                {"length_unit", name(document.settings.length_unit)},
                {"target_size", document.current().judging->deck_size},
                {"target_size_guessed", is_guessed(document.current().judging->target_size)},
-               {"criteria", printable(document.settings.criteria.name)}};
+               {"criteria", printable(document.current().judging->criteria.criteria->name)}};
   if (const auto& chordal = figures.chordal) {
     const auto figure = [&](double value) { return chordal->measured > 0 ? Json(value) : Json(nullptr); };
     json["chordal_deviation"] = {{"mean", figure(chordal->mean)},

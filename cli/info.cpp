@@ -55,6 +55,7 @@ void print_text(std::ostream& out, const mesh::document::Document& document) {
   out << "length unit  " << unit << guessed(settings.length_unit_guessed) << '\n';
   const mesh::document::Judging& judging = *document.current().judging;
   out << "target size  " << target_sizes(document) << ' ' << unit << guessed(is_guessed(judging.target_size)) << '\n';
+  out << "criteria     " << criteria_names(document) << '\n';
   out << "nodes        " << document.current().model.node_index->size() << '\n';
   out << "shells       " << n.quad << " quads, " << n.tri << " triangles, " << n.quad8 << " 8-node quads, " << n.tri6
       << " 6-node triangles\n";

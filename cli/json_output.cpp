@@ -86,6 +86,7 @@ std::string info_json(const document::Document& document, const std::vector<Part
                      {"length_unit_guessed", settings.length_unit_guessed},
                      {"target_size", judging.deck_size},
                      {"target_size_guessed", is_guessed(judging.target_size)},
+                     {"criteria", printable(judging.criteria.criteria->name)},
                      {"nodes", document.current().model.node_index->size()},
                      {"elements", counts_of_elements(deck.element_cards.without(deck.left_out_cards))},
                      {"elements_left_out", counts_of_elements(deck.left_out_cards)},

@@ -36,7 +36,7 @@ Result<mesh::deck::SaveReport> save_deck(const mesh::document::Document& documen
 
 bool save_settings(const mesh::document::Document& document, const Context& context) {
   const std::filesystem::path file = mesh::document::deck_settings_path(document.path);
-  const Result<void> written = mesh::document::write_deck_settings(document.current(), document.settings, document.path);
+  const Result<void> written = mesh::document::write_deck_settings(document.current(), document.path);
   if (!written)
     say(context, written.error());
   else

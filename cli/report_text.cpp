@@ -73,7 +73,7 @@ std::string target_sizes(const mesh::document::Document& document) {
 }
 
 std::string criteria_names(const mesh::document::Document& document) {
-  std::vector<std::string> names = {document.settings.criteria.name};
+  std::vector<std::string> names = {document.current().judging->criteria.criteria->name};
   for (const mesh::quality::PartCriteria& each : document.current().judging->by_part.distinct)
     if (each.criteria && std::find(names.begin(), names.end(), each.criteria->name) == names.end()) names.push_back(each.criteria->name);
   std::string all = printable(names.front());

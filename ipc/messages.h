@@ -199,6 +199,7 @@ struct QualityPart {
   double composite = 1, least_composite = 1;  ///< mean and least over its shells: docs/quality/README.md
   double target_size = 0;                     ///< that they are judged by
   mesh::quality::SizeFrom size_from = mesh::quality::SizeFrom::part;
+  std::string criteria{};  ///< the name of those that they are judged by
 };
 struct Quality {
   std::uint64_t generation = 0;

@@ -62,7 +62,7 @@ PRISMESH_JSON_OBJECT(ipc::QualityError, f("shell", m.shell), f("metric", m.metri
                      f("fail", m.fail), f("at", m.at), f("node", m.node));
 PRISMESH_JSON_OBJECT(ipc::QualityPart, f("part", m.part), f("shells", m.shells), f("warn", m.warn), f("fail", m.fail),
                      f("composite", m.composite), f("least_composite", m.least_composite), f("target_size", m.target_size),
-                     f("size_from", m.size_from));
+                     f("size_from", m.size_from), f("criteria", m.criteria));
 PRISMESH_MESSAGE(ipc::ShellsFound, "shells_found", f("shells", m.shells), f("expr", m.expr));
 PRISMESH_MESSAGE(ipc::EditPreviewed, "edit_previewed", f("generation", m.generation), f("report", m.report), f("points", m.points),
                  f("shells", m.shells), f("shell_count", m.shell_count), f("replaced", m.replaced));

@@ -47,6 +47,7 @@ struct SnapshotPart {
   std::uint32_t shells = 0;
   double target_size = 1;
   mesh::quality::SizeFrom size_from = mesh::quality::SizeFrom::part;
+  std::string criteria{};  ///< its own: a built-in name or a file; empty: the deck's
 };
 
 struct SnapshotInfo {
@@ -54,6 +55,7 @@ struct SnapshotInfo {
   std::string document;     ///< path
   std::string length_unit;  ///< "mm", ...
   double target_size = 1;
+  std::string criteria;  ///< the deck's: a built-in name or a file
   mesh::quality::Counts counts;
   std::uint64_t nodes = 0;  ///< existing ones; the arrays also hold removed ones
   std::uint64_t selected_nodes = 0;

@@ -244,7 +244,7 @@ struct SnapshotPublisher::Impl {
     return {};
   }
 
-  /// What damage is measured from; made anew only when target sizes were set.
+  /// What damage is measured from; made anew only when target sizes or criteria were set.
   std::shared_ptr<const Generation> opened_as_judged(const Document& document) {
     const std::shared_ptr<const mesh::document::Judging>& judging = document.current().judging;
     if (!opened_judged || opened_judged_from != document.opened || opened_judged->judging != judging) {
@@ -282,6 +282,8 @@ struct SnapshotPublisher::Impl {
     info.document = document.path.string();
     info.length_unit = std::string(name(document.settings.length_unit));
     info.target_size = generation.judging ? generation.judging->deck_size : document.settings.target_size;
+    info.criteria = generation.judging ? generation.judging->criteria.name : "";
+    if (info.criteria.empty()) info.criteria = mesh::quality::built_in_criteria().front();
     info.counts = generation.counts;
     info.nodes = mesh::live_nodes(generation.model);
     info.selected_nodes = generation.selected_nodes;
@@ -294,11 +296,12 @@ struct SnapshotPublisher::Impl {
     for (std::size_t p = 0; p < parts.size(); ++p) {
       const bool has_state = generation.parts && p < generation.parts->size();
       const mesh::document::PartState state = has_state ? (*generation.parts)[p] : mesh::document::PartState{};
-      ipc::SnapshotPart part{parts[p].id, parts[p].name, state.hidden, state.locked, per_model.shells_of_part[p], info.target_size, {}};
+      ipc::SnapshotPart part{parts[p].id, parts[p].name, state.hidden, state.locked, per_model.shells_of_part[p], info.target_size, {}, {}};
       if (generation.judging && p < generation.judging->parts.size()) {
         const mesh::quality::PartCriteria& judged = generation.judging->by_part.of(mesh::PartIndex(p));
         part.target_size = judged.target_size;
         part.size_from = judged.size_from;
+        if (const auto& own = generation.judging->parts[p].criteria) part.criteria = own->name;
       }
       info.parts.push_back(std::move(part));
     }

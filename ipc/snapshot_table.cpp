@@ -9,7 +9,7 @@ namespace prismesh::ipc {
 
 namespace {
 
-constexpr std::uint64_t kSnapshotMagic = 0x3454'534d'5350'5250;  // "PRPSMST4"
+constexpr std::uint64_t kSnapshotMagic = 0x3554'534d'5350'5250;  // "PRPSMST5"
 // Indices into the arrays are 32 bits wide, and the last value means none.
 constexpr std::uint64_t kMaxElements = 2 * std::uint64_t{0xffff'fffe};
 
@@ -20,6 +20,7 @@ void put_info(ByteWriter& out, const SnapshotInfo& info) {
   out.put(info.document);
   out.put(info.length_unit);
   out.put(info.target_size);
+  out.put(info.criteria);
   for (const std::size_t number : {info.counts.ok, info.counts.warn, info.counts.fail}) out.put(std::uint64_t{number});
   out.put(info.nodes);
   out.put(info.selected_nodes);
@@ -34,6 +35,7 @@ void put_info(ByteWriter& out, const SnapshotInfo& info) {
     out.put(part.shells);
     out.put(part.target_size);
     out.put(static_cast<std::uint8_t>(part.size_from));
+    out.put(part.criteria);
   }
 }
 
@@ -43,6 +45,7 @@ SnapshotInfo get_info(ByteReader& in) {
   info.document = in.text();
   info.length_unit = in.text();
   info.target_size = in.get<double>();
+  info.criteria = in.text();
   info.counts.ok = in.get<std::uint64_t>();
   info.counts.warn = in.get<std::uint64_t>();
   info.counts.fail = in.get<std::uint64_t>();
@@ -52,9 +55,10 @@ SnapshotInfo get_info(ByteReader& in) {
   info.can_undo = in.get<std::uint8_t>() != 0;
   info.can_redo = in.get<std::uint8_t>() != 0;
   info.changed = in.get<std::uint8_t>() != 0;
-  // A part takes 31 bytes at least: id, length of the name, two flags, number of shells, target size and where it comes from.
+  // A part takes 39 bytes at least: id, length of the name, two flags, number of shells, target size and where it comes from, length of the
+  // criteria.
   const auto parts = in.get<std::uint64_t>();
-  for (std::uint64_t i = 0; in.holds(parts - i, 31) && i < parts; ++i) {
+  for (std::uint64_t i = 0; in.holds(parts - i, 39) && i < parts; ++i) {
     SnapshotPart part;
     part.id = in.get<std::int64_t>();
     part.name = in.text();
@@ -63,6 +67,7 @@ SnapshotInfo get_info(ByteReader& in) {
     part.shells = in.get<std::uint32_t>();
     part.target_size = in.get<double>();
     part.size_from = static_cast<mesh::quality::SizeFrom>(std::min<std::uint8_t>(in.get<std::uint8_t>(), 2));
+    part.criteria = in.text();
     info.parts.push_back(std::move(part));
   }
   return info;

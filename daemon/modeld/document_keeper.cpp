@@ -11,6 +11,7 @@
 #include "mesh/document/deck_settings.h"
 #include "mesh/document/edit_kinds.h"
 #include "mesh/document/history.h"
+#include "mesh/document/self_contained.h"
 #include "mesh/model/topology_change.h"
 
 namespace prismesh::modeld {
@@ -64,11 +65,15 @@ Result<DocumentKeeper::OpenDocument> DocumentKeeper::load(const ipc::Open& reque
   if (Result<void> settled = settle_saves(path, warnings); !settled) return fail(std::move(settled.error()));
   Result<OpenedDeck> opened = mesh::deck::open(path, progress);
   if (!opened) return fail(std::move(opened.error()));
+  const Hash128 content = opened->deck->content;
+  const fs::path journal_path = folder_.journal(path, content);
+  std::vector<Error> unread;
+  if (is_there(journal_path)) options->unread_criteria = &unread;  // the journal has their content
   Result<Document> document = mesh::document::open(path, std::move(*opened), *options);
   if (!document) return fail(std::move(document.error()));
-
-  const Hash128 content = document->deck->content;
-  const fs::path journal_path = folder_.journal(path, content);
+  for (Error& error : unread)
+    warnings.push_back({std::move(error.file), error.line, "criteria-not-read",
+                        std::move(error.message) + ". The criteria are those that the unsaved edits were made with", 1});
   Result<Journal> journal = is_there(journal_path) ? Journal::recover(journal_path, *document) : Journal::create(journal_path, *document);
   if (!journal) {
     Error error = std::move(journal.error());
@@ -186,7 +191,9 @@ Result<EditReport> DocumentKeeper::edit(const Edit& edit, const Progress& progre
         open.document.path.string(),
         "its last save isn't finished, and edits made now could be lost: save again to finish it, save under another name, or close "
         "the document");
-  Result<Prepared> prepared = if_memory_allows([&] { return prepare(open.document, edit, progress, clock); }, "");
+  const Result<Edit> whole = self_contained(open.document, edit);
+  if (!whole) return fail(whole.error());
+  Result<Prepared> prepared = if_memory_allows([&] { return prepare(open.document, *whole, progress, clock); }, "");
   if (!prepared) return fail(std::move(prepared.error()));
   EditReport report = prepared->report;
   const bool push = prepared->step == Prepared::Step::push;
@@ -195,24 +202,24 @@ Result<EditReport> DocumentKeeper::edit(const Edit& edit, const Progress& progre
   if (!follows && prepared->step == Prepared::Step::undo &&
       prepared->next->model.topology_change != open.recorded.current().model.topology_change)
     return fail("", "this step can't be undone any more: it changed the structure, and the journal no longer has the state before it");
-  Prepared recorded = follows ? *prepared : as_push(*prepared, edit);
+  Prepared recorded = follows ? *prepared : as_push(*prepared, *whole);
   if (push) recorded.drop_oldest = same_drop(*prepared);
   // After the record is written, nothing may fail for lack of memory.
   open.recorded.generations.reserve(open.recorded.generations.size() + 1);
   open.document.generations.reserve(open.document.generations.size() + 1);
-  if (Result<void> appended = open.journal.append(open.recorded, edit, recorded); !appended) return fail(std::move(appended.error()));
+  if (Result<void> appended = open.journal.append(open.recorded, *whole, recorded); !appended) return fail(std::move(appended.error()));
   commit(open.recorded, std::move(recorded));
   const std::shared_ptr<const Judging> judging = open.document.current().judging;
   commit(open.document, std::move(*prepared));
-  if (open.document.current().judging != judging) keep_sizes(report);
+  if (open.document.current().judging != judging) keep_judging(report);
   return report;
 }
 
-/// Writes the target sizes beside the deck. They aren't part of the deck, so they don't wait until it is saved.
-void DocumentKeeper::keep_sizes(EditReport& report) const {
+/// Writes target sizes and criteria beside the deck. They aren't part of the deck, so they don't wait until it is saved.
+void DocumentKeeper::keep_judging(EditReport& report) const {
   const Document& document = open_->document;
-  if (const Result<void> kept = write_deck_settings(document.current(), document.settings, document.path); !kept)
-    report.notes.push_back("the target sizes are not kept beside the deck: " + kept.error().text());
+  if (const Result<void> kept = write_deck_settings(document.current(), document.path); !kept)
+    report.notes.push_back("target sizes and criteria are not kept beside the deck: " + kept.error().text());
 }
 
 Result<void> DocumentKeeper::close(bool discard) {

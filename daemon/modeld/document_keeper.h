@@ -110,7 +110,7 @@ class DocumentKeeper {
   mesh::document::Prepared as_push(const mesh::document::Prepared& prepared, const mesh::document::Edit& edit);
   const mesh::document::Generation* own_step(mesh::document::Prepared::Step step) const;
   const mesh::document::Generation* original_of(const mesh::document::Generation* recorded) const;
-  void keep_sizes(mesh::document::EditReport& report) const;
+  void keep_judging(mesh::document::EditReport& report) const;
   std::size_t same_drop(const mesh::document::Prepared& prepared) const;
   Result<void> let_go();
 

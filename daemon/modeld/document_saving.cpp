@@ -239,8 +239,8 @@ Result<Document> DocumentKeeper::read_again(const fs::path& path, OpenedDeck ope
     return fail(path.string(), "the saved deck would not be read as what is shown here; nothing was changed");
   OpenOptions options;
   options.length_unit = now.settings.length_unit;
-  options.settings = now.settings;  // the criteria file may have been removed
-  options.judged_by = now.current().judging;
+  options.settings = now.settings;
+  options.judged_by = now.current().judging;  // a criteria file may have been removed
   options.history_bytes = now.history_bytes;
   Result<Document> next = mesh::document::open(path, std::move(opened), options);
   if (!next) return next;

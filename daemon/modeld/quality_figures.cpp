@@ -99,7 +99,7 @@ struct Wrong {
   float value = 0;
   double severity = 0;
   bool fails = false;
-  mesh::NodeIndex node;  ///< of a cluster of triangles
+  mesh::NodeIndex node{};  ///< of a cluster of triangles
 };
 bool worse(const Wrong& a, const Wrong& b) {
   if (a.fails != b.fails) return a.fails;
@@ -229,7 +229,7 @@ class Gathering {
   /// Clusters aren't judged by a metric: they count when all are asked for.
   void add_clusters(Figures& all) {
     if (metric_ >= 0) return;
-    const double allowed = document_.settings.criteria.warn_triangles_at_node;
+    const double allowed = generation_.judging->criteria.criteria->warn_triangles_at_node;
     const std::vector<std::uint8_t> made =
         damaged_ ? mesh::document::made_worse(*document_.opened, generation_) : std::vector<std::uint8_t>();
     for (std::size_t i = 0; i < generation_.clusters->size(); ++i) {
@@ -285,7 +285,8 @@ class Gathering {
       if (!mesh::PartIndex(index).valid()) continue;
       const mesh::quality::PartCriteria& judged = generation_.judging->by_part.of(mesh::PartIndex(index));
       quality.parts.push_back({(*generation_.model.parts)[index].id, sum.shells, sum.warn, sum.fail,
-                               sum.sum / static_cast<double>(sum.shells), sum.least, judged.target_size, judged.size_from});
+                               sum.sum / static_cast<double>(sum.shells), sum.least, judged.target_size, judged.size_from,
+                               sized(*generation_.judging).of(mesh::PartIndex(index)).criteria.name});
     }
   }
 

@@ -16,6 +16,7 @@ Result<void> apply_edit(const Document& document, const Shrink& edit, Generation
 Result<void> apply_edit(const Document& document, const Invert& edit, Generation& next, EditReport& report);
 Result<void> apply_edit(const Document& document, const SetParts& edit, Generation& next, EditReport& report);
 Result<void> apply_edit(const Document& document, const SetTargetSize& edit, Generation& next, EditReport& report);
+Result<void> apply_edit(const Document& document, const SetCriteria& edit, Generation& next, EditReport& report);
 Result<void> apply_edit(const Document& document, const Translate& edit, Generation& next, EditReport& report);
 Result<void> apply_edit(const Document& document, const Lift& edit, Generation& next, EditReport& report);
 Result<void> apply_edit(const Document& document, const Slide& edit, Generation& next, EditReport& report);

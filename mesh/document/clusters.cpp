@@ -24,9 +24,9 @@ bool is_touched(const Model& opened, const Model& model, ShellIndex shell) {
 
 }  // namespace
 
-std::shared_ptr<const quality::TriangleClusters> clusters_of(const DocumentSettings& settings, const Model& model) {
+std::shared_ptr<const quality::TriangleClusters> clusters_of(const Judging& judging, const Model& model) {
   return std::make_shared<const quality::TriangleClusters>(
-      quality::find_triangle_clusters(model, settings.criteria.warn_triangles_at_node));
+      quality::find_triangle_clusters(model, judging.criteria.criteria->warn_triangles_at_node));
 }
 
 std::vector<std::uint8_t> made_worse(const Generation& opened, const Generation& now) {

@@ -12,8 +12,8 @@
 
 namespace prismesh::mesh::document {
 
-/// The clusters of a model by the document's criteria.
-std::shared_ptr<const quality::TriangleClusters> clusters_of(const DocumentSettings& settings, const Model& model);
+/// The clusters of a model by the deck's criteria.
+std::shared_ptr<const quality::TriangleClusters> clusters_of(const Judging& judging, const Model& model);
 
 /// For each cluster of `now` whether edits made it worse: 1 if its node has more triangles than in `opened`, or is new.
 std::vector<std::uint8_t> made_worse(const Generation& opened, const Generation& now);

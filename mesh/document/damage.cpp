@@ -9,8 +9,7 @@ std::shared_ptr<const Generation> opened_as_judged(const Document& document, con
   const Generation& opened = *document.opened;
   if (opened.judging == generation.judging || !opened.judging || !generation.judging) return document.opened;
   auto judged = std::make_shared<Generation>(opened);
-  rejudge_parts(judged->model, document.settings.criteria, *opened.judging, *generation.judging, judged->quality, judged->counts);
-  judged->judging = generation.judging;
+  judge_by(generation.judging, *judged);
   return judged;
 }
 

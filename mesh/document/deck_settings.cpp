@@ -8,6 +8,7 @@
 #include "base/json/write.h"
 #include "base/nearest_name.h"
 #include "base/toml_text.h"
+#include "mesh/document/chosen_criteria.h"
 #include "mesh/select/expression.h"
 
 #include <toml++/toml.h>
@@ -59,7 +60,7 @@ class DeckSettingsReader {
       rule.line = line_of(*criteria);
       const auto name = criteria->value<std::string>();
       if (!name || name->empty()) return error(*criteria, "criteria must be a name or a file, like \"strict\"");
-      rule.criteria = quality::is_built_in_criteria(*name) ? *name : (folder_of(file_) / *name).string();
+      rule.criteria = criteria_place(*name, folder_of(file_));
     }
     return {};
   }
@@ -115,7 +116,8 @@ std::string criteria_text(const std::string& name, const fs::path& settings_file
   const fs::path whole = fs::absolute(name, failed).lexically_normal();
   const fs::path folder = fs::absolute(folder_of(settings_file), failed).lexically_normal();
   const fs::path below = whole.lexically_relative(folder);
-  return toml_quoted(below.empty() || *below.begin() == ".." ? whole.string() : below.string());
+  if (below.empty() || *below.begin() == "..") return toml_quoted(whole.string());
+  return toml_quoted((quality::is_built_in_criteria(below) ? "./" : "") + below.string());
 }
 
 }  // namespace
@@ -142,18 +144,18 @@ Result<std::vector<JudgingRule>> read_deck_settings(const fs::path& file) {
   return parse_deck_settings(bytes->text(), file);
 }
 
-bool has_choices(const Generation& generation, const DocumentSettings& settings) {
+bool has_choices(const Generation& generation) {
   const Judging& judging = *generation.judging;
-  return judging.target_size != TargetSize(SizeGuess::part) || settings.criteria_from ||
+  return judging.target_size != TargetSize(SizeGuess::part) || !judging.criteria.name.empty() ||
          std::any_of(judging.parts.begin(), judging.parts.end(),
                      [](const PartChoice& choice) { return choice.target_size || choice.criteria; });
 }
 
-std::string deck_settings_text(const Generation& generation, const DocumentSettings& settings, const fs::path& file) {
+std::string deck_settings_text(const Generation& generation, const fs::path& file) {
   const Judging& judging = *generation.judging;
   std::string text = "# What the shells of this deck are judged by: docs/quality/criteria.md. Prismesh writes this file anew.\n";
   text += "target_size = " + size_text(judging.target_size) + "\n";
-  if (settings.criteria_from) text += "criteria = " + criteria_text(*settings.criteria_from, file) + "\n";
+  if (!judging.criteria.name.empty()) text += "criteria = " + criteria_text(judging.criteria.name, file) + "\n";
   std::map<std::string, std::vector<std::int64_t>> parts_of;  // by the text of the choice
   for (std::size_t p = 0; p < judging.parts.size(); ++p) {
     const PartChoice& choice = judging.parts[p];
@@ -169,14 +171,14 @@ std::string deck_settings_text(const Generation& generation, const DocumentSetti
 Result<void> keep_deck_settings(const Document& document, const fs::path& saved_as) {
   const bool chosen_by_edit = document.current().judging != document.opened->judging;
   if (!document.settings.has_file && !chosen_by_edit) return {};
-  return write_deck_settings(document.current(), document.settings, saved_as);
+  return write_deck_settings(document.current(), saved_as);
 }
 
-Result<void> write_deck_settings(const Generation& generation, const DocumentSettings& settings, const fs::path& deck) {
+Result<void> write_deck_settings(const Generation& generation, const fs::path& deck) {
   const fs::path file = deck_settings_path(deck);
   std::error_code failed;
-  if (!has_choices(generation, settings) && !fs::exists(file, failed)) return {};
-  const std::string text = deck_settings_text(generation, settings, file);
+  if (!has_choices(generation) && !fs::exists(file, failed)) return {};
+  const std::string text = deck_settings_text(generation, file);
   const std::vector<PendingFile> pending{{file, {text}}};
   return replace_files(pending);
 }

@@ -10,7 +10,6 @@
 #include "mesh/document/document.h"
 #include "mesh/document/generation.h"
 #include "mesh/document/judging_rules.h"
-#include "mesh/document/settings.h"
 
 namespace prismesh::mesh::document {
 
@@ -25,13 +24,14 @@ Result<std::vector<JudgingRule>> read_deck_settings(const std::filesystem::path&
 Result<std::vector<JudgingRule>> parse_deck_settings(std::string_view text, const std::filesystem::path& file);
 
 /// What the user chose, as the text of the settings file `file`. Reading it gives the same choices.
-std::string deck_settings_text(const Generation& generation, const DocumentSettings& settings, const std::filesystem::path& file);
+std::string deck_settings_text(const Generation& generation, const std::filesystem::path& file);
 /// Whether the user chose anything: a target size or criteria of all parts or of some.
-bool has_choices(const Generation& generation, const DocumentSettings& settings);
-/// Writes the settings file of a deck that the document was saved as, if the document has such a file or an edit chose target sizes.
+bool has_choices(const Generation& generation);
+/// Writes the settings file of a deck that the document was saved as, if the document has such a file or an edit chose target sizes or
+/// criteria.
 /// Errors: the disk's.
 Result<void> keep_deck_settings(const Document& document, const std::filesystem::path& saved_as);
 /// Writes the settings file of a deck, whole or not at all. Without choices it is written only in place of another. Errors: the disk's.
-Result<void> write_deck_settings(const Generation& generation, const DocumentSettings& settings, const std::filesystem::path& deck);
+Result<void> write_deck_settings(const Generation& generation, const std::filesystem::path& deck);
 
 }  // namespace prismesh::mesh::document

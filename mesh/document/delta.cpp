@@ -1,9 +1,13 @@
 #include "mesh/document/delta.h"
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 #include <optional>
+#include <string>
+#include <string_view>
 
+#include "mesh/document/chosen_criteria.h"
 #include "mesh/document/judging_rules.h"
 #include "mesh/model/topology_change.h"
 
@@ -13,6 +17,7 @@ namespace {
 
 constexpr std::uint8_t kVersion = 2;
 constexpr std::uint8_t kVersionWithSizes = 3;      ///< as 2, followed by target sizes; written where an edit set any
+constexpr std::uint8_t kVersionWithCriteria = 4;   ///< as 3, followed by criteria; written where an edit set any
 constexpr std::uint8_t kVersionWithoutGrowth = 1;  ///< of journals that were written before edits could change the structure
 
 // --- writing ---
@@ -28,6 +33,10 @@ class DeltaWriter {
   void bits(double value) {
     const std::uint64_t word = std::bit_cast<std::uint64_t>(value);
     for (int shift = 0; shift < 64; shift += 8) byte(static_cast<std::uint8_t>(word >> shift));
+  }
+  void text(std::string_view value) {
+    number(value.size());
+    for (const char each : value) byte(static_cast<std::uint8_t>(each));
   }
   std::vector<std::byte> take() { return std::move(bytes_); }
 
@@ -163,6 +172,45 @@ void write_sizes(const Judging& before, const Judging& after, DeltaWriter& out) 
   write_indices(changed, out, [&](PartIndex part) { write_size(after.parts[part.value].target_size, out); });
 }
 
+bool is_same_own(const std::optional<ChosenCriteria>& a, const std::optional<ChosenCriteria>& b) {
+  return a.has_value() == b.has_value() && (!a || is_same_choice(*a, *b));
+}
+
+bool have_same_criteria(const Judging& a, const Judging& b) {
+  return is_same_choice(a.criteria, b.criteria) &&
+         std::equal(a.parts.begin(), a.parts.end(), b.parts.begin(), b.parts.end(),
+                    [](const PartChoice& of_a, const PartChoice& of_b) { return is_same_own(of_a.criteria, of_b.criteria); });
+}
+
+/// The criteria that are new, each once, then who has which: 0 for none chosen, or a place in that list, from 1.
+void write_criteria(const Judging& before, const Judging& after, DeltaWriter& out) {
+  std::vector<const ChosenCriteria*> listed;
+  const auto place = [&](const ChosenCriteria& chosen) {
+    const auto found =
+        std::find_if(listed.begin(), listed.end(), [&](const ChosenCriteria* each) { return is_same_choice(*each, chosen); });
+    const auto at = static_cast<std::uint64_t>(found - listed.begin());
+    if (found == listed.end()) listed.push_back(&chosen);
+    return at + 1;
+  };
+  const std::uint64_t of_deck = after.criteria.name.empty() ? 0 : place(after.criteria);
+  std::vector<PartIndex> changed;
+  std::vector<std::uint64_t> places;
+  for (std::size_t p = 0; p < after.parts.size(); ++p) {
+    const std::optional<ChosenCriteria>& own = after.parts[p].criteria;
+    if (is_same_own(before.parts[p].criteria, own)) continue;
+    changed.emplace_back(p);
+    places.push_back(own ? place(*own) : 0);
+  }
+  out.number(listed.size());
+  for (const ChosenCriteria* each : listed) {
+    out.text(each->name);
+    out.text(*each->text);
+  }
+  out.number(of_deck);
+  std::size_t next = 0;
+  write_indices(changed, out, [&](PartIndex) { out.number(places[next++]); });
+}
+
 // --- reading ---
 
 /// Reads numbers; after the end or a bad one everything is 0 and ok() is false.
@@ -191,6 +239,12 @@ class DeltaReader {
     std::uint64_t word = 0;
     for (int shift = 0; shift < 64; shift += 8) word |= static_cast<std::uint64_t>(byte()) << shift;
     return std::bit_cast<double>(word);
+  }
+  std::string text() {
+    const std::uint64_t size = count(1);
+    std::string value;
+    for (std::uint64_t i = 0; i < size; ++i) value += static_cast<char>(byte());
+    return value;
   }
   /// A count of entries of at least `bytes_each` bytes; 0 if so many can't follow, so that no memory is reserved for them.
   std::uint64_t count(std::size_t bytes_each) {
@@ -365,12 +419,40 @@ std::optional<TargetSize> read_size(DeltaReader& in) {
   return size;
 }
 
-void read_sizes(DeltaReader& in, Generation& generation) {
-  auto judging = std::make_shared<Judging>(*generation.judging);
+void read_sizes(DeltaReader& in, Judging& judging) {
   const std::optional<TargetSize> of_all = read_size(in);
   if (!of_all) return in.refuse();
-  judging->target_size = *of_all;
-  read_indices<PartIndex>(in, 2, judging->parts.size(), [&](PartIndex part) { judging->parts[part.value].target_size = read_size(in); });
+  judging.target_size = *of_all;
+  read_indices<PartIndex>(in, 2, judging.parts.size(), [&](PartIndex part) { judging.parts[part.value].target_size = read_size(in); });
+}
+
+void read_criteria(DeltaReader& in, Judging& judging) {
+  const double scale = judging.criteria.criteria->time_step_scale;
+  std::vector<ChosenCriteria> listed;
+  const std::uint64_t count = in.count(2);
+  for (std::uint64_t i = 0; i < count; ++i) {
+    const std::string name = in.text();
+    std::string text = in.text();
+    if (!in.ok() || name.empty()) return in.refuse();
+    Result<ChosenCriteria> chosen = read_chosen_criteria(name, std::move(text), scale);
+    if (!chosen) return in.refuse();
+    listed.push_back(shared_choice(judging, std::move(*chosen)));
+  }
+  const auto read_place = [&]() -> std::optional<ChosenCriteria> {
+    const std::uint64_t place = in.number();
+    if (place > listed.size()) in.refuse();
+    if (!in.ok() || place == 0) return std::nullopt;
+    return listed[static_cast<std::size_t>(place - 1)];
+  };
+  const std::optional<ChosenCriteria> of_deck = read_place();
+  judging.criteria = of_deck ? *of_deck : shared_choice(judging, default_choice(scale));
+  read_indices<PartIndex>(in, 2, judging.parts.size(), [&](PartIndex part) { judging.parts[part.value].criteria = read_place(); });
+}
+
+void read_judging(DeltaReader& in, bool with_criteria, Generation& generation) {
+  auto judging = std::make_shared<Judging>(*generation.judging);
+  read_sizes(in, *judging);
+  if (with_criteria && in.ok()) read_criteria(in, *judging);
   if (!in.ok()) return;
   settle(*judging);
   generation.judging = std::move(judging);
@@ -383,7 +465,8 @@ std::size_t grown(std::size_t size, std::int64_t by) { return static_cast<std::s
 std::vector<std::byte> encode_delta(const Generation& before, const Generation& after) {
   DeltaWriter out;
   const bool has_sizes = before.judging != after.judging && before.judging && after.judging;
-  out.byte(has_sizes ? kVersionWithSizes : kVersion);
+  const bool has_criteria = has_sizes && !have_same_criteria(*before.judging, *after.judging);
+  out.byte(has_criteria ? kVersionWithCriteria : has_sizes ? kVersionWithSizes : kVersion);
   write_growth(before.model, after.model, out);
   write_moved(before, after, out);
   write_runs(changed_runs(before.node_marks, after.node_marks), out);
@@ -391,14 +474,14 @@ std::vector<std::byte> encode_delta(const Generation& before, const Generation& 
   out.byte(static_cast<std::uint8_t>(after.selection_kind));
   write_parts(before, after, out);
   if (has_sizes) write_sizes(*before.judging, *after.judging, out);
+  if (has_criteria) write_criteria(*before.judging, *after.judging, out);
   return out.take();
 }
 
 Result<NodeSet> apply_delta(std::span<const std::byte> delta, Generation& generation) {
   DeltaReader in(delta);
   const std::uint8_t version = in.byte();
-  if (version != kVersion && version != kVersionWithSizes && version != kVersionWithoutGrowth)
-    return fail("", "its delta is of another version");
+  if (version < kVersionWithoutGrowth || version > kVersionWithCriteria) return fail("", "its delta is of another version");
   if (version != kVersionWithoutGrowth) read_growth(in, generation.model);
   generation.node_marks.resize(generation.model.node_count());
   generation.shell_marks.resize(generation.model.shell_count());
@@ -409,9 +492,9 @@ Result<NodeSet> apply_delta(std::span<const std::byte> delta, Generation& genera
   if (kind > static_cast<std::uint8_t>(select::EntityKind::part)) in.refuse();
   generation.selection_kind = static_cast<select::EntityKind>(kind);
   read_parts(in, generation);
-  if (version == kVersionWithSizes) {
+  if (version >= kVersionWithSizes) {
     if (!generation.judging) return fail("", "its delta doesn't fit the model");
-    read_sizes(in, generation);
+    read_judging(in, version == kVersionWithCriteria, generation);
   }
   if (!in.at_end()) return fail("", "its delta doesn't fit the model");
   return moved;

@@ -29,6 +29,6 @@ struct Document {
 };
 
 /// What the shells of the current generation are judged by. The document must outlive the result and not change.
-inline quality::SizedCriteria judged_by(const Document& document) { return sized(document.settings.criteria, *document.current().judging); }
+inline quality::SizedCriteria judged_by(const Document& document) { return sized(*document.current().judging); }
 
 }  // namespace prismesh::mesh::document

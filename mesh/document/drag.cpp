@@ -62,12 +62,11 @@ quality::Counts total(quality::Counts sum, const std::vector<quality::Counts>& p
 
 }  // namespace
 
-Result<Drag> Drag::begin(std::shared_ptr<const Generation> base, const DocumentSettings& settings, const Edit& edit) {
+Result<Drag> Drag::begin(std::shared_ptr<const Generation> base, const Edit& edit) {
   Result<Motion> motion = plan_motion(*base, edit, nullptr);
   if (!motion) return fail(motion.error());
   Drag drag;
   drag.motion_ = std::make_shared<const Motion>(std::move(*motion));
-  drag.settings_ = settings;
   drag.edit_ = edit;
   drag.positions_ = drag.motion_->start;
   const Model& model = base->model;
@@ -99,7 +98,7 @@ void Drag::step(const Displacement& displacement) {
   if (!std::all_of(positions.begin(), positions.end(), [](const Vec3& position) { return position.allFinite(); })) return;
   displacement_ = displacement;
   positions_ = std::move(positions);
-  const quality::LimitsByPart limits = quality::limits_for(sized(settings_.criteria, *base_->judging));
+  const quality::LimitsByPart limits = quality::limits_for(sized(*base_->judging));
   std::vector<quality::Counts> counts((corners_.size() + kDragGrain - 1) / kDragGrain);
   parallel_for(corners_.size(), kDragGrain, [&](std::size_t begin, std::size_t end) {
     const std::size_t count = end - begin;

@@ -10,7 +10,6 @@
 #include "base/error.h"
 #include "mesh/document/edit.h"
 #include "mesh/document/generation.h"
-#include "mesh/document/settings.h"
 #include "mesh/model/node_set.h"
 #include "mesh/quality/report.h"
 #include "mesh/quality/shell_properties.h"
@@ -23,7 +22,7 @@ struct Motion;
 class Drag {
  public:
   /// `edit` is a Translate, Lift, Slide or Rotate; its displacement is ignored. Errors as `prepare`.
-  static Result<Drag> begin(std::shared_ptr<const Generation> base, const DocumentSettings& settings, const Edit& edit);
+  static Result<Drag> begin(std::shared_ptr<const Generation> base, const Edit& edit);
 
   /// Nodes that can move (weight > 0) and the shells that touch them; fixed for the whole drag.
   const NodeSet& nodes() const;
@@ -45,7 +44,6 @@ class Drag {
  private:
   std::shared_ptr<const Generation> base_;
   std::shared_ptr<const Motion> motion_;  ///< as applying the edit uses it
-  DocumentSettings settings_;
   Edit edit_;
   ShellSet shells_;
   Displacement displacement_;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -66,6 +67,16 @@ struct SetTargetSize {
   TargetSize size = SizeGuess::part;
   std::optional<std::string> on;
 };
+
+/// Sets the criteria that shells are judged by, of the same parts.
+struct SetCriteria {
+  std::string criteria;  ///< built-in criteria, a file (a path relative to the deck's folder), or kDeckCriteria
+  /// The file's content; without it the file is read. The journal has it, so that a replay doesn't depend on the file.
+  std::optional<std::string> text;
+  std::optional<std::string> on;
+};
+/// The word for which parts have no criteria of their own any more, but the deck's.
+inline constexpr std::string_view kDeckCriteria = "deck";
 
 /// The nodes that an edit acts on: an expression of kind node, or a recipe that selects, evaluated when the edit is applied; its mode is
 /// ignored. A recipe of a region by coordinates finds the same region on a remeshed variant.
@@ -153,8 +164,8 @@ struct Restructure {
 struct Undo {};
 struct Redo {};
 
-using Edit = std::variant<Select, SelectRegion, SelectLasso, Grow, Shrink, Invert, SetParts, SetTargetSize, Translate, Lift, Slide, Rotate,
-                          Relax, Repair, Restructure, Undo, Redo>;
+using Edit = std::variant<Select, SelectRegion, SelectLasso, Grow, Shrink, Invert, SetParts, SetTargetSize, SetCriteria, Translate, Lift,
+                          Slide, Rotate, Relax, Repair, Restructure, Undo, Redo>;
 
 /// The Shaping of a shaping edit; null for the others.
 const Shaping* shaping_of(const Edit& edit);

@@ -130,6 +130,7 @@ PRISMESH_JSON_OBJECT(mesh::document::Shrink, f("rings", m.rings, kRings));
 PRISMESH_JSON_OBJECT(mesh::document::Invert, );
 PRISMESH_JSON_OBJECT(mesh::document::SetParts, f("on", m.on));
 PRISMESH_JSON_OBJECT(mesh::document::SetTargetSize, f.required("size", m.size), f("on", m.on));
+PRISMESH_JSON_OBJECT(mesh::document::SetCriteria, f.required("criteria", m.criteria), f("text", m.text), f("on", m.on));
 PRISMESH_JSON_OBJECT(mesh::document::Translate, f.required("by", m.by), Definition<mesh::document::Shaping>::fields(m.shaping, f));
 PRISMESH_JSON_OBJECT(mesh::document::Lift, f.required("distance", m.distance), f("normals", m.each_normal, kNormals),
                      Definition<mesh::document::Shaping>::fields(m.shaping, f));

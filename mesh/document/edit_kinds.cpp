@@ -26,6 +26,7 @@ std::span<const EditKind> edit_kinds() {
         {"lock", parts, SetParts{VisibilityAction::lock, {}}},
         {"unlock", parts, SetParts{VisibilityAction::unlock, {}}},
         {"set_target_size", parts, SetTargetSize{}},
+        {"set_criteria", parts, SetCriteria{}},
         {"translate", shaping, Translate{}},
         {"lift", shaping, Lift{}},
         {"slide", shaping, Slide{}},

@@ -2,10 +2,12 @@
 
 #include <map>
 #include <tuple>
+#include <utility>
 
 #include "base/base64.h"
 #include "base/json/read.h"
 #include "base/json/write.h"
+#include "mesh/document/chosen_criteria.h"
 #include "mesh/document/delta.h"
 #include "mesh/document/edit_json.h"
 #include "mesh/document/edit_kinds.h"
@@ -45,14 +47,24 @@ std::vector<JournalHeader::PartSizes> part_sizes(const Model& model, const Judgi
   return sizes;
 }
 
+/// The deck's criteria, then those of parts, the parts that share them together.
+std::vector<JournalHeader::ChosenOn> chosen_criteria(const Model& model, const Judging& judging) {
+  std::vector<JournalHeader::ChosenOn> chosen{{std::nullopt, judging.criteria.name, *judging.criteria.text}};
+  std::map<std::pair<std::string_view, std::string_view>, std::vector<std::int64_t>> alike;
+  for (std::size_t p = 0; p < judging.parts.size(); ++p)
+    if (const auto& own = judging.parts[p].criteria) alike[{own->name, *own->text}].push_back((*model.parts)[p].id);
+  for (auto& [key, ids] : alike) chosen.push_back({select::to_expression(std::move(ids)), std::string(key.first), std::string(key.second)});
+  return chosen;
+}
+
 JournalHeader header_of(const Document& document) {
   const Model& model = document.opened->model;
   const DocumentSettings& settings = document.settings;
   const Judging& judging = *document.opened->judging;
   return {PRISMESH_VERSION,
           {document.path.string(), document.deck->content.hex(), model.node_count(), model.shell_count(), model.parts->size()},
-          {settings.length_unit, judging.deck_size, settings.criteria.name, judging.target_size, judging.guessed_size,
-           part_sizes(model, judging)}};
+          {settings.length_unit, judging.deck_size, judging.criteria.criteria->name, judging.target_size, judging.guessed_size,
+           part_sizes(model, judging), chosen_criteria(model, judging)}};
 }
 
 Result<void> check_deck(const JournalHeader& header, const Document& document, const std::string& file) {
@@ -67,9 +79,8 @@ Result<void> check_deck(const JournalHeader& header, const Document& document, c
   return {};
 }
 
-/// The target sizes as the journal's header has them: the guesses that its edits were made with, and what was chosen.
-Result<Judging> judging_in(const JournalHeader& header, const Document& document, const std::string& file) {
-  Judging judging = *document.opened->judging;  // with its criteria
+/// Takes the target sizes as the journal's header has them: the guesses that its edits were made with, and what was chosen.
+Result<void> take_sizes(const JournalHeader& header, const Model& model, const std::string& file, Judging& judging) {
   judging.guessed_size = header.settings.guessed_size.value_or(header.settings.target_size);
   judging.target_size = header.settings.size_of_all;
   for (std::size_t p = 0; p < judging.parts.size(); ++p) {
@@ -77,28 +88,51 @@ Result<Judging> judging_in(const JournalHeader& header, const Document& document
     judging.guessed[p] = {judging.guessed_size, nullptr, quality::SizeFrom::deck};
   }
   for (const JournalHeader::PartSizes& sizes : header.settings.parts) {
-    const Result<std::vector<PartIndex>> parts = parts_named_by(sizes.on, document.opened->model, {});
+    const Result<std::vector<PartIndex>> parts = parts_named_by(sizes.on, model, {});
     if (!parts || !(sizes.guessed > 0 && sizes.guessed < 1e300)) return fail(file, 1, "its target sizes of parts don't fit the deck");
     for (const PartIndex part : *parts) {
       judging.guessed[part.value] = {sizes.guessed, nullptr, sizes.from};
       judging.parts[part.value].target_size = sizes.own;
     }
   }
-  settle(judging);
-  return judging;
+  return {};
+}
+
+/// Takes the criteria as the journal's header has them.
+Result<void> take_criteria(const JournalHeader& header, const Model& model, const std::string& file, Judging& judging) {
+  const double scale = judging.criteria.criteria->time_step_scale;
+  for (PartChoice& choice : judging.parts) choice.criteria.reset();
+  for (const JournalHeader::ChosenOn& chosen : header.settings.chosen_criteria) {
+    const auto wrong = [&](const std::string& why) { return fail(file, 1, "its criteria can't be used: " + why); };
+    Result<ChosenCriteria> read = chosen.name.empty() ? default_choice(scale) : read_chosen_criteria(chosen.name, chosen.text, scale);
+    if (!read) return wrong(read.error().text());
+    const ChosenCriteria shared = shared_choice(judging, std::move(*read));
+    if (!chosen.on) {
+      judging.criteria = shared;
+      continue;
+    }
+    const Result<std::vector<PartIndex>> parts = parts_named_by(*chosen.on, model, {});
+    if (!parts) return wrong(parts.error().text());
+    for (const PartIndex part : *parts) judging.parts[part.value].criteria = shared;
+  }
+  return {};
 }
 
 /// Takes settings that were only guessed from the journal; settings that the user gave stay.
 Result<void> take_settings(const JournalHeader& header, Document& document, const std::string& file) {
   DocumentSettings& settings = document.settings;
   if (settings.length_unit_guessed) settings.length_unit = header.settings.length_unit;
-  if (!settings.target_size_guessed || settings.part_sizes_given || !(header.settings.target_size > 0)) return {};
-  Result<Judging> judging = judging_in(header, document, file);
-  if (!judging) return fail(std::move(judging.error()));
+  Judging judging = *document.opened->judging;
+  const Model& model = document.opened->model;
+  if (!settings.sizes_given && header.settings.target_size > 0)
+    if (Result<void> taken = take_sizes(header, model, file, judging); !taken) return taken;
+  if (!settings.criteria_given && !header.settings.chosen_criteria.empty())
+    if (Result<void> taken = take_criteria(header, model, file, judging); !taken) return taken;
+  settle(judging);
+  settings.target_size = judging.deck_size;
+  settings.target_size_guessed = is_guessed(judging.target_size);
   auto judged = std::make_shared<Generation>(*document.opened);
-  rejudge_parts(judged->model, settings.criteria, *judged->judging, *judging, judged->quality, judged->counts);
-  settings.target_size = judging->deck_size;
-  judged->judging = std::make_shared<const Judging>(std::move(*judging));
+  judge_by(std::make_shared<const Judging>(std::move(judging)), *judged);
   document.opened = judged;
   document.generations = {document.opened};
   return {};
@@ -128,9 +162,9 @@ Result<std::shared_ptr<const Generation>> rebuilt(const Document& document, cons
   auto next = std::make_shared<Generation>(document.current());
   const Result<NodeSet> moved = apply_delta(*delta, *next);
   if (!moved) return fail(moved.error());
-  settle_growth(document.settings, document.current(), *moved, *next);
-  if (next->judging != document.current().judging)
-    rejudge_parts(next->model, document.settings.criteria, *document.current().judging, *next->judging, next->quality, next->counts);
+  std::shared_ptr<const Judging> judging = std::exchange(next->judging, document.current().judging);
+  settle_growth(document.current(), *moved, *next);
+  if (judging != next->judging) judge_by(std::move(judging), *next);
   if (reshapes(record.intent)) next->surface = std::make_shared<const Model>(next->model);
   next->number = document.next_number;
   next->made_by = edit_name(record.intent);

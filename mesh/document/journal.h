@@ -38,8 +38,8 @@ class Journal {
   static Result<Journal> create(const std::filesystem::path& path, const Document& document);
   /// Opens a journal and brings `document` (freshly opened from the same deck) to its last acknowledged state. Cuts off an incomplete last
   /// record, and a damaged last record, of which it keeps the journal as found beside it. After earlier damage nothing can be read: the
-  /// document gets the edits before it, and the journal is left unchanged and takes no edits. A length unit or target size that `document`
-  /// only guessed is taken from the journal.
+  /// document gets the edits before it, and the journal is left unchanged and takes no edits. A length unit, target sizes
+  /// and criteria that the user didn't give when `document` was opened are taken from the journal.
   /// Errors: another deck's journal (both hashes named), a damaged header, in use by another process; then `document` is unchanged.
   static Result<Journal> recover(const std::filesystem::path& path, Document& document);
 

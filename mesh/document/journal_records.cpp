@@ -114,7 +114,8 @@ PRISMESH_JSON_OBJECT(mesh::document::JournalHeader::Deck, f.required("path", m.p
                      f.required("nodes", m.nodes), f.required("shells", m.shells), f.required("parts", m.parts));
 PRISMESH_JSON_OBJECT(mesh::document::JournalHeader::Settings, f.required("length_unit", m.length_unit),
                      f.required("target_size", m.target_size), f.required("criteria", m.criteria), f("size_of_all", m.size_of_all),
-                     f("guessed_size", m.guessed_size), f("parts", m.parts));
+                     f("guessed_size", m.guessed_size), f("parts", m.parts), f("chosen_criteria", m.chosen_criteria));
+PRISMESH_JSON_OBJECT(mesh::document::JournalHeader::ChosenOn, f("on", m.on), f.required("name", m.name), f("text", m.text));
 PRISMESH_JSON_OBJECT(mesh::document::JournalHeader::PartSizes, f.required("on", m.on), f.required("guessed", m.guessed),
                      f.required("from", m.from), f("own", m.own));
 PRISMESH_JSON_NAMES(mesh::document::Prepared::Step,

@@ -26,13 +26,20 @@ struct JournalHeader {
     quality::SizeFrom from = quality::SizeFrom::part;
     std::optional<TargetSize> own;  ///< that the user chose for them
   };
+  /// Criteria with their content, so that a recovery needs no file.
+  struct ChosenOn {
+    std::optional<std::string> on;  ///< parts, as an expression; absent: the deck's
+    std::string name;               ///< what the user gave; empty: nobody chose
+    std::string text;
+  };
   struct Settings {
     LengthUnit length_unit = LengthUnit::mm;
     double target_size = 1;
     std::string criteria;
     TargetSize size_of_all = SizeGuess::deck;  ///< of the parts without a size of their own; older journals: one size for all
-    std::optional<double> guessed_size;        ///< the deck's; absent: target_size
-    std::vector<PartSizes> parts;              ///< empty in older journals
+    std::optional<double> guessed_size{};      ///< the deck's; absent: target_size
+    std::vector<PartSizes> parts{};            ///< empty in older journals
+    std::vector<ChosenOn> chosen_criteria{};   ///< the deck's first; empty in older journals
   };
   std::string program;  ///< version that wrote it
   Deck deck;

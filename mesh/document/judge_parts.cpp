@@ -1,29 +1,36 @@
 #include "mesh/document/judge_parts.h"
 
+#include <utility>
 #include <vector>
+
+#include "mesh/document/clusters.h"
 
 namespace prismesh::mesh::document {
 
 namespace {
 
-bool judge_alike(const quality::PartCriteria& a, const quality::PartCriteria& b) {
-  return a.target_size == b.target_size && a.criteria == b.criteria;
+bool are_judged_alike(const Judging& before, const Judging& now, PartIndex part) {
+  const quality::SizedCriteria a = sized(before).of(part), b = sized(now).of(part);
+  return a.target_size == b.target_size && &a.criteria == &b.criteria;
 }
 
 }  // namespace
 
-void rejudge_parts(const Model& model, const quality::Criteria& criteria, const Judging& before, const Judging& now,
-                   ChunkedArray<quality::ShellState>& states, quality::Counts& counts) {
+void judge_by(std::shared_ptr<const Judging> judging, Generation& generation) {
+  const std::shared_ptr<const Judging> before = std::exchange(generation.judging, std::move(judging));
+  const Judging& now = *generation.judging;
+  const Model& model = generation.model;
   std::vector<bool> is_changed(now.parts.size(), false);
-  for (std::size_t p = 0; p < now.parts.size(); ++p)
-    is_changed[p] = !judge_alike(before.by_part.of(PartIndex(p)), now.by_part.of(PartIndex(p)));
+  for (std::size_t p = 0; p < now.parts.size(); ++p) is_changed[p] = !are_judged_alike(*before, now, PartIndex(p));
+  const bool others_changed = !are_judged_alike(*before, now, PartIndex());
   ShellSet shells;
   for (std::size_t s = 0; s < model.shell_count(); ++s) {
     const PartIndex part = model.shell_parts[s];
-    const bool changed = part.valid() ? is_changed[part.value] : before.deck_size != now.deck_size;
-    if (changed && !model.is_removed(ShellIndex(s))) shells.emplace_back(s);
+    if ((part.valid() ? is_changed[part.value] : others_changed) && !model.is_removed(ShellIndex(s))) shells.emplace_back(s);
   }
-  if (!shells.empty()) quality::rejudge(model, sized(criteria, now), shells, states, counts);
+  if (!shells.empty()) quality::rejudge(model, sized(now), shells, generation.quality, generation.counts);
+  if (before->criteria.criteria->warn_triangles_at_node != now.criteria.criteria->warn_triangles_at_node)
+    generation.clusters = clusters_of(now, model);
 }
 
 }  // namespace prismesh::mesh::document

@@ -1,14 +1,15 @@
 // Judges the shells again whose part is judged otherwise than before. Private to mesh/document.
 #pragma once
 
-#include "mesh/document/document.h"
+#include <memory>
+
+#include "mesh/document/generation.h"
 #include "mesh/document/judging.h"
 
 namespace prismesh::mesh::document {
 
-/// Updates `states` and `counts` of a model's shells, which `before` judged, to what `now` says. Costs the shells of the parts that are
-/// judged otherwise.
-void rejudge_parts(const Model& model, const quality::Criteria& criteria, const Judging& before, const Judging& now,
-                   ChunkedArray<quality::ShellState>& states, quality::Counts& counts);
+/// Judges a generation by `judging` instead of its own: updates the states and counts of the shells whose part is judged otherwise, and the
+/// clusters of triangles if the deck's limit is another one. Costs these shells.
+void judge_by(std::shared_ptr<const Judging> judging, Generation& generation);
 
 }  // namespace prismesh::mesh::document

@@ -19,21 +19,23 @@ using TargetSize = std::variant<SizeGuess, double>;
 
 inline bool is_guessed(const TargetSize& size) { return std::holds_alternative<SizeGuess>(size); }
 
-/// Criteria with the name or file that the user gave.
+/// Criteria with the name or file that the user gave, and their text, so that nothing depends on the file any more.
 struct ChosenCriteria {
-  std::string name;
+  std::string name;  ///< built-in, or the file's path; empty: nobody chose, they are the built-in default
   std::shared_ptr<const quality::Criteria> criteria;
+  std::shared_ptr<const std::string> text;
 };
 
 /// What the user chose for one part.
 struct PartChoice {
   std::optional<TargetSize> target_size;   ///< absent: as for all parts
-  std::optional<ChosenCriteria> criteria;  ///< absent: the document's
+  std::optional<ChosenCriteria> criteria;  ///< absent: the deck's
 };
 
 struct Judging {
   // chosen
   TargetSize target_size = SizeGuess::part;  ///< of the parts that have no choice of their own
+  ChosenCriteria criteria;                   ///< the deck's: of the parts that have none of their own, and of the deck as a whole
   std::vector<PartChoice> parts;             ///< by PartIndex
 
   // guessed when the deck was opened
@@ -48,9 +50,7 @@ struct Judging {
 /// Derives what follows from what is chosen and guessed.
 void settle(Judging& judging);
 
-/// The criteria with the sizes of every part. `criteria` and `judging` must outlive the result.
-inline quality::SizedCriteria sized(const quality::Criteria& criteria, const Judging& judging) {
-  return {criteria, judging.deck_size, &judging.by_part};
-}
+/// The criteria and sizes of every part. `judging` must outlive the result and not change.
+inline quality::SizedCriteria sized(const Judging& judging) { return {*judging.criteria.criteria, judging.deck_size, &judging.by_part}; }
 
 }  // namespace prismesh::mesh::document

@@ -2,6 +2,7 @@
 
 #include <charconv>
 
+#include "mesh/document/chosen_criteria.h"
 #include "mesh/select/expression.h"
 
 namespace prismesh::mesh::document {
@@ -31,23 +32,25 @@ Result<void> choose_size(const TargetSize& size, const std::vector<PartIndex>* p
   return {};
 }
 
-Result<void> choose_criteria(const std::string& path, const std::vector<PartIndex>* parts, DocumentSettings& settings, Judging& judging) {
-  Result<quality::Criteria> criteria = quality::load_criteria(path);
-  if (!criteria) return fail(std::move(criteria.error()));
-  criteria->time_step_scale = settings.criteria.time_step_scale;
+Result<void> choose_criteria(const std::string& path, const std::vector<PartIndex>* parts, Judging& judging, std::vector<Error>* unread) {
+  Result<ChosenCriteria> read = load_chosen_criteria(path, judging.criteria.criteria->time_step_scale);
+  if (!read && unread != nullptr) {
+    unread->push_back(std::move(read.error()));
+    return {};
+  }
+  if (!read) return fail(std::move(read.error()));
+  const ChosenCriteria chosen = shared_choice(judging, std::move(*read));
   if (parts != nullptr) {
-    const ChosenCriteria chosen{path, std::make_shared<const quality::Criteria>(std::move(*criteria))};
     for (const PartIndex part : *parts) judging.parts[part.value].criteria = chosen;
     return {};
   }
-  settings.criteria = std::move(*criteria);
-  settings.criteria_from = path;
+  judging.criteria = chosen;
   for (PartChoice& choice : judging.parts) choice.criteria.reset();
   return {};
 }
 
-Result<void> apply_rule(const JudgingRule& rule, const Model& model, const select::Names& names, DocumentSettings& settings,
-                        Judging& judging) {
+Result<void> apply_rule(const JudgingRule& rule, const Model& model, const select::Names& names, Judging& judging,
+                        std::vector<Error>* unread) {
   std::vector<PartIndex> parts;
   if (rule.on) {
     Result<std::vector<PartIndex>> named = parts_named_by(*rule.on, model, names);
@@ -58,7 +61,7 @@ Result<void> apply_rule(const JudgingRule& rule, const Model& model, const selec
   if (rule.target_size)
     if (Result<void> done = choose_size(*rule.target_size, named, judging); !done) return done;
   if (rule.criteria)
-    if (Result<void> done = choose_criteria(*rule.criteria, named, settings, judging); !done) return done;
+    if (Result<void> done = choose_criteria(*rule.criteria, named, judging, unread); !done) return done;
   return {};
 }
 
@@ -89,10 +92,10 @@ Result<TargetSize> parse_target_size(std::string_view text) {
   return size;
 }
 
-Result<void> apply_rules(const std::vector<JudgingRule>& rules, const Model& model, const select::Names& names, DocumentSettings& settings,
-                         Judging& judging) {
+Result<void> apply_rules(const std::vector<JudgingRule>& rules, const Model& model, const select::Names& names, Judging& judging,
+                         std::vector<Error>* unread) {
   for (const JudgingRule& rule : rules)
-    if (Result<void> done = apply_rule(rule, model, names, settings, judging); !done) return fail(at_rule(std::move(done.error()), rule));
+    if (Result<void> done = apply_rule(rule, model, names, judging, unread); !done) return fail(at_rule(std::move(done.error()), rule));
   return {};
 }
 

@@ -8,7 +8,6 @@
 
 #include "base/error.h"
 #include "mesh/document/judging.h"
-#include "mesh/document/settings.h"
 #include "mesh/model/model.h"
 #include "mesh/select/names.h"
 
@@ -33,7 +32,9 @@ Result<void> check_target_size(const TargetSize& size);
 
 /// Applies rules in order, the last one that names a part counts. `judging` has an entry for each part of the model; it isn't settled
 /// afterwards. Errors: the rule's place with those of the expression, of load_criteria, of check_target_size.
-Result<void> apply_rules(const std::vector<JudgingRule>& rules, const Model& model, const select::Names& names, DocumentSettings& settings,
-                         Judging& judging);
+/// `unread` (optional): criteria that can't be read don't refuse their rule then, which leaves the criteria as they were; the reasons are
+/// added here.
+Result<void> apply_rules(const std::vector<JudgingRule>& rules, const Model& model, const select::Names& names, Judging& judging,
+                         std::vector<Error>* unread = nullptr);
 
 }  // namespace prismesh::mesh::document

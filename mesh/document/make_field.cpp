@@ -40,8 +40,8 @@ Result<Field> make_field(const FieldWish& wish, const Generation& generation, co
       if (!to) return fail(to.error());
       return gap_field(generation.model, *from, *to, unit, progress);
     }
-    case FieldWish::Of::metric: return metric_field(generation.model, wish.metric, document.settings, generation.judging.get());
-    case FieldWish::Of::composite: return composite_field(generation.model, document.settings, generation.judging.get());
+    case FieldWish::Of::metric: return metric_field(generation.model, wish.metric, sized(*generation.judging), unit);
+    case FieldWish::Of::composite: return composite_field(generation.model, sized(*generation.judging));
     case FieldWish::Of::time_step: break;
   }
   return time_step_field(generation.model, document.deck ? document.deck->time_step : TimeStepControl{});

@@ -3,6 +3,7 @@
 #include "mesh/deck/data/deck.h"
 #include "mesh/deck/data/length_unit.h"
 #include "mesh/deck/open.h"
+#include "mesh/document/chosen_criteria.h"
 #include "mesh/document/clusters.h"
 #include "mesh/document/deck_relations.h"
 #include "mesh/document/deck_settings.h"
@@ -49,20 +50,22 @@ Result<Settled> find_settings(const std::filesystem::path& path, const deck::Dec
   const std::optional<LengthUnit> known = options.length_unit ? options.length_unit : deck.length_unit;
   settings.length_unit_guessed = !known;
   settings.length_unit = known ? *known : deck::guess_length_unit(model);
-  if (!options.settings) settings.criteria = quality::default_criteria();
-  settings.criteria.time_step_scale = deck.time_step.scale;
   if (options.judged_by && options.judged_by->parts.size() == model.parts->size()) return Settled{settings, options.judged_by};
 
   Judging judging = guesses_for(model);
+  judging.criteria = options.judged_by ? options.judged_by->criteria : default_choice(deck.time_step.scale);
   std::error_code failed;
   settings.has_file = options.read_settings_file && std::filesystem::exists(deck_settings_path(path), failed);
   const Result<std::vector<JudgingRule>> rules = rules_of(path, options);
   if (!rules) return fail(rules.error());
-  if (Result<void> applied = apply_rules(*rules, model, names, settings, judging); !applied) return fail(std::move(applied.error()));
+  if (Result<void> applied = apply_rules(*rules, model, names, judging, options.unread_criteria); !applied)
+    return fail(std::move(applied.error()));
   settle(judging);
   settings.target_size = judging.deck_size;
-  settings.part_sizes_given =
-      std::any_of(options.rules.begin(), options.rules.end(), [](const JudgingRule& rule) { return rule.on && rule.target_size; });
+  const auto is_given = [&](const auto& of_rule) { return std::any_of(options.rules.begin(), options.rules.end(), of_rule); };
+  settings.sizes_given = options.target_size || is_given([](const JudgingRule& rule) { return rule.target_size.has_value(); });
+  const bool all_read = options.unread_criteria == nullptr || options.unread_criteria->empty();
+  settings.criteria_given = all_read && (options.criteria || is_given([](const JudgingRule& rule) { return rule.criteria.has_value(); }));
   settings.target_size_guessed = !std::holds_alternative<double>(judging.target_size);
   return Settled{std::move(settings), std::make_shared<const Judging>(std::move(judging))};
 }
@@ -74,9 +77,9 @@ std::shared_ptr<const Generation> first_generation(std::shared_ptr<const DeckRel
   first->shell_marks = ChunkedArray<std::uint8_t>::filled(model.shell_count());
   first->parts = std::make_shared<const std::vector<PartState>>(model.parts->size());
   first->judging = settled.judging;
-  first->quality = quality::judge_model(model, sized(settled.settings.criteria, *settled.judging));
+  first->quality = quality::judge_model(model, sized(*settled.judging));
   first->counts = quality::count(first->quality);
-  first->clusters = clusters_of(settled.settings, model);
+  first->clusters = clusters_of(*settled.judging, model);
   first->weight = quality::mass_properties(model);
   first->surface = std::make_shared<const Model>(model);
   first->model = std::move(model);

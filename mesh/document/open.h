@@ -25,7 +25,8 @@ struct OpenOptions {
   std::vector<JudgingRule> rules;                    ///< applied after the settings file and the two above
   bool read_settings_file = true;                    ///< the settings beside the deck, if there are any
   std::shared_ptr<const Judging> judged_by;          ///< replaces all of these and the guesses
-  std::optional<DocumentSettings> settings;          ///< with `judged_by`: its criteria
+  std::optional<DocumentSettings> settings;          ///< with `judged_by`: where it came from
+  std::vector<Error>* unread_criteria = nullptr;     ///< not null: criteria that can't be read are left out, and the reasons put here
   std::size_t history_bytes = std::size_t{2} << 30;  ///< Document::history_bytes
   Progress progress;
 };

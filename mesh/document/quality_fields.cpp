@@ -25,10 +25,6 @@ std::string title_of(Metric metric) {
   return title;
 }
 
-quality::SizedCriteria field_criteria(const DocumentSettings& settings, const Judging* judging) {
-  return judging != nullptr ? sized(settings.criteria, *judging) : quality::SizedCriteria{settings.criteria, settings.target_size};
-}
-
 bool have_same_limits(const quality::Threshold& a, const quality::Threshold& b) {
   return a.warn_low == b.warn_low && a.warn_high == b.warn_high && a.fail_low == b.fail_low && a.fail_high == b.fail_high;
 }
@@ -73,9 +69,8 @@ Result<Field> unless_empty(Field field, const char* why) {
 
 }  // namespace
 
-Result<Field> metric_field(const Model& model, Metric metric, const DocumentSettings& settings, const Judging* judging) {
-  const quality::SizedCriteria criteria = field_criteria(settings, judging);
-  Field field{title_of(metric), std::string(quality::unit_of(metric, name(settings.length_unit))), false, {}, {}, {}};
+Result<Field> metric_field(const Model& model, Metric metric, const quality::SizedCriteria& criteria, LengthUnit unit) {
+  Field field{title_of(metric), std::string(quality::unit_of(metric, name(unit))), false, {}, {}, {}};
   fill(field, model.shell_count(), [&](std::size_t begin, std::size_t end, double* out) {
     const std::vector<ShellIndex> shells = live_shells_in(model, begin, end);
     std::vector<quality::Values> values(shells.size());
@@ -89,8 +84,7 @@ Result<Field> metric_field(const Model& model, Metric metric, const DocumentSett
   return unless_empty(std::move(field), "there is no shell that it applies to");
 }
 
-Result<Field> composite_field(const Model& model, const DocumentSettings& settings, const Judging* judging) {
-  const quality::SizedCriteria criteria = field_criteria(settings, judging);
+Result<Field> composite_field(const Model& model, const quality::SizedCriteria& criteria) {
   Field field{"composite quality", {}, false, {}, {}, {kClearComposite, kFailingComposite}};
   fill(field, model.shell_count(), [&](std::size_t begin, std::size_t end, double* out) {
     const std::vector<ShellIndex> shells = live_shells_in(model, begin, end);

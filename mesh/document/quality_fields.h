@@ -2,21 +2,21 @@
 #pragma once
 
 #include "base/error.h"
+#include "base/units.h"
 #include "mesh/document/field.h"
-#include "mesh/document/judging.h"
-#include "mesh/document/settings.h"
 #include "mesh/model/model.h"
+#include "mesh/quality/criteria.h"
 #include "mesh/quality/metrics.h"
 #include "mesh/quality/time_step.h"
 
 namespace prismesh::mesh::document {
 
 /// A metric of each shell that it applies to. Suggested limits: the quads' limits of warning and failing; the whole range if there are
-/// none, and for lengths if parts have different limits. `judging`: what parts are judged by; null: all shells by the settings.
-Result<Field> metric_field(const Model& model, quality::Metric metric, const DocumentSettings& settings, const Judging* judging = nullptr);
+/// none, and if parts have different limits.
+Result<Field> metric_field(const Model& model, quality::Metric metric, const quality::SizedCriteria& criteria, LengthUnit unit);
 
-/// quality::composite of each shell; `judging` as above. Suggested limits: halfway to failing, and failing.
-Result<Field> composite_field(const Model& model, const DocumentSettings& settings, const Judging* judging = nullptr);
+/// quality::composite of each shell. Suggested limits: halfway to failing, and failing.
+Result<Field> composite_field(const Model& model, const quality::SizedCriteria& criteria);
 
 /// The stable time step of each shell whose material is known, TSSFAC included, in the deck's time unit. Suggested limits: twice the
 /// smallest, and the smallest.

@@ -69,14 +69,14 @@ std::size_t& count_of(quality::Counts& counts, quality::Grade grade) {
 }
 
 /// Updates states and counts for added, changed and removed shells. `touched`: existing shells of `next` that differ.
-void judge_again(const DocumentSettings& settings, const Changes& changes, const ShellSet& touched, Generation& next) {
+void judge_again(const Changes& changes, const ShellSet& touched, Generation& next) {
   next.counts.ok += next.model.shell_count() - next.quality.size();
   next.quality.resize(next.model.shell_count());
   for (const ShellIndex shell : changes.removed_shells) {
     --count_of(next.counts, next.quality[shell.value].grade());
     next.quality.set(shell.value, {});
   }
-  quality::rejudge(next.model, sized(settings.criteria, *next.judging), touched, next.quality, next.counts);
+  quality::rejudge(next.model, sized(*next.judging), touched, next.quality, next.counts);
 }
 
 /// Existing shells of `after` whose corners or positions differ.
@@ -127,15 +127,15 @@ Result<void> carry_out(const Document& document, const repair::Restructuring& ch
   return deck::can_restructure(*document.deck, document.opened->model, model, moved_of_deck(document.opened->model, model, change));
 }
 
-void settle_growth(const DocumentSettings& settings, const Generation& before, const NodeSet& moved, Generation& next) {
+void settle_growth(const Generation& before, const NodeSet& moved, Generation& next) {
   const Changes changes = changes_between(before.model, next.model);
   if (!changes.empty() && !next.model.adjacency)
     next.model.adjacency = std::make_shared<const Adjacency>(update_adjacency(before.model, next.model));
   next.node_marks.resize(next.model.node_count());
   next.shell_marks.resize(next.model.shell_count());
   const ShellSet touched = touched_shells(next.model, changes, moved);
-  judge_again(settings, changes, touched, next);
-  if (!changes.empty()) next.clusters = clusters_of(settings, next.model);
+  judge_again(changes, touched, next);
+  if (!changes.empty()) next.clusters = clusters_of(*next.judging, next.model);
   weigh_again(before, changes, touched, next);
 }
 
@@ -143,7 +143,7 @@ Result<void> restructure(const Document& document, const repair::Restructuring& 
   const Generation& before = document.current();
   if (const Result<void> done = carry_out(document, change, next.model); !done) return done;
   const NodeSet moved = moved_nodes(before.model, next.model);
-  settle_growth(document.settings, before, moved, next);
+  settle_growth(before, moved, next);
   const Changes changes = changes_between(before.model, next.model);
   carry_selection(changes, next);
   mark_parts_at(corners_of_changed(before.model, next.model, changes), next);

@@ -20,7 +20,7 @@ Result<void> restructure(const Document& document, const repair::Restructuring& 
 
 /// The second half of `restructure`, for a `next` whose model was changed otherwise: updates adjacency, quality, clusters and weight, and
 /// resizes the marks. `moved`: nodes of both whose positions differ, ascending.
-void settle_growth(const DocumentSettings& settings, const Generation& before, const NodeSet& moved, Generation& next);
+void settle_growth(const Generation& before, const NodeSet& moved, Generation& next);
 
 /// The first half of `restructure`: changes the model alone. Errors: as restructure.
 Result<void> carry_out(const Document& document, const repair::Restructuring& change, Model& model);

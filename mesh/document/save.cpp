@@ -39,7 +39,7 @@ Result<deck::SaveReport> save(const Document& document, const std::filesystem::p
   if (Result<void> placed = staged->put_in_place(); !placed) return fail(std::move(placed.error()));
   deck::SaveReport report = staged->report();
   if (const Result<void> kept = keep_deck_settings(document, target); !kept)
-    report.notes.push_back("the target sizes are not kept beside the deck: " + kept.error().text());
+    report.notes.push_back("target sizes and criteria are not kept beside the deck: " + kept.error().text());
   return report;
 }
 

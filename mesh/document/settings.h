@@ -1,11 +1,7 @@
-// The settings of a document: the unit, and what its elements are judged by.
+// The settings of a document: its unit, and where what its elements are judged by came from.
 #pragma once
 
-#include <optional>
-#include <string>
-
 #include "base/units.h"
-#include "mesh/quality/criteria.h"
 
 namespace prismesh::mesh::document {
 
@@ -14,10 +10,9 @@ struct DocumentSettings {
   bool length_unit_guessed = true;
   double target_size = 1;  ///< of shells that belong to no part, when the deck was opened; those of parts: Generation::judging
   bool target_size_guessed = true;
-  bool has_file = false;                     ///< there is a settings file beside the deck
-  bool part_sizes_given = false;             ///< the user gave sizes of parts when the deck was opened
-  quality::Criteria criteria;                ///< of the parts without criteria of their own
-  std::optional<std::string> criteria_from;  ///< the name or file that the user gave
+  bool has_file = false;        ///< there is a settings file beside the deck
+  bool sizes_given = false;     ///< the user gave target sizes when the deck was opened, besides the settings file
+  bool criteria_given = false;  ///< the same of criteria
 };
 
 }  // namespace prismesh::mesh::document

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <iterator>
 
+#include "mesh/shape/rotate.h"
+
 namespace prismesh::mesh::document {
 
 namespace {

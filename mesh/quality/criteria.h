@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
@@ -80,10 +81,19 @@ struct SizedCriteria {
 };
 
 /// Reads a TOML criteria file, or takes the built-in criteria of that name ("default", "strict"; a file of such a name is ./strict).
-/// Errors: file, line and, for an unknown metric, the nearest known one.
+/// Criteria without a name get that of their file. Errors: file, line and, for an unknown metric, the nearest known one.
 Result<Criteria> load_criteria(const std::filesystem::path& path);
+/// The text that load_criteria reads. Errors: the disk's; more than kMaxCriteriaBytes.
+Result<std::string> criteria_text(const std::filesystem::path& path);
+inline constexpr std::size_t kMaxCriteriaBytes = std::size_t{1} << 20;
 /// The same from text; `file` names it in errors.
 Result<Criteria> parse_criteria(std::string_view text, const std::string& file);
+/// The names of the built-in criteria, the default first.
+std::vector<std::string_view> built_in_criteria();
+/// The criteria files in a folder, ascending by name: files *.toml that parse_criteria takes. Without those in folders below and settings
+/// files of decks; max kMaxListedCriteria.
+std::vector<std::filesystem::path> criteria_files_in(const std::filesystem::path& folder);
+inline constexpr std::size_t kMaxListedCriteria = 50;
 /// Whether load_criteria takes this for the name of built-in criteria rather than for a file.
 bool is_built_in_criteria(const std::filesystem::path& name);
 /// The criteria built in: the same text as mesh/quality/criteria/default.toml, compiled into the program.

@@ -87,7 +87,7 @@ void drag_begin_10k_with_welds(benchmark::State& state) {
   Translate pull;
   std::size_t nodes = 0;
   for (auto _ : state) {
-    Result<Drag> drag = Drag::begin(document.generations[document.cursor], document.settings, Edit(pull));
+    Result<Drag> drag = Drag::begin(document.generations[document.cursor], Edit(pull));
     if (!drag) return state.SkipWithError(drag.error().text().c_str());
     nodes = drag->nodes().size();
   }

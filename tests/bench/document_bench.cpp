@@ -75,7 +75,7 @@ void drag_begin_10k(benchmark::State& state, const char* kind, bool symmetric) {
   const Document& document = million();
   const Edit edit = drag_of(kind, symmetric);
   for (auto _ : state) {
-    Result<Drag> drag = Drag::begin(document.generations[document.cursor], document.settings, edit);
+    Result<Drag> drag = Drag::begin(document.generations[document.cursor], edit);
     if (!drag) return state.SkipWithError(drag.error().text().c_str());
     benchmark::DoNotOptimize(drag);
   }
@@ -83,7 +83,7 @@ void drag_begin_10k(benchmark::State& state, const char* kind, bool symmetric) {
 
 void drag_step_10k(benchmark::State& state, const char* kind, bool symmetric) {
   const Document& document = million();
-  Result<Drag> drag = Drag::begin(document.generations[document.cursor], document.settings, drag_of(kind, symmetric));
+  Result<Drag> drag = Drag::begin(document.generations[document.cursor], drag_of(kind, symmetric));
   if (!drag) return state.SkipWithError(drag.error().text().c_str());
   double size = 0;
   for (auto _ : state) {

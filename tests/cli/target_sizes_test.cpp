@@ -113,5 +113,33 @@ TEST_F(CliSizes, an_edit_that_sets_a_size_keeps_it_beside_what_is_written) {
   EXPECT_EQ(prismesh({"check", path("copy.k"), "--json"}).json()["fail"], 16) << "a copy keeps the settings";
 }
 
+TEST_F(CliSizes, an_edit_that_sets_criteria_keeps_them_beside_what_is_written) {
+  write("short.toml", "name = \"short\"\n[metrics.max_length]\nfail_above = 0.5\n");
+  const std::string script = write("edits.jsonl",
+                                   "{\"edit\": \"set_criteria\", \"criteria\": \"strict\", \"on\": \"all\"}\n"
+                                   "{\"edit\": \"set_criteria\", \"criteria\": \"short.toml\", \"on\": \"part:8\"}\n");
+  const Outcome set = prismesh({"edit", deck, "--script", script, "-o", path("out.k")});
+  ASSERT_EQ(set.status, kDone) << set.err;
+  EXPECT_THAT(set.out, HasSubstr("set_criteria: 0 nodes moved; warn 0 -> 0, fail 0 -> 16\n  part 8: criteria short, before strict\n"));
+  EXPECT_EQ(read(path("out.k")), read(deck)) << "criteria aren't part of the deck";
+  const Outcome check = prismesh({"check", path("out.k"), "--json"});
+  EXPECT_EQ(check.json()["fail"], 16);
+  EXPECT_EQ(check.json()["criteria"], "strict");
+  EXPECT_THAT(judged(check.json()["parts"]), ElementsAre("7 5.0 part strict", "8 100.0 part short"));
+  const std::string text = prismesh({"check", path("out.k")}).out;
+  EXPECT_THAT(text, HasSubstr("criteria strict, short by part\n"));
+  EXPECT_THAT(text, HasSubstr("    size  criteria  name\n"));
+  EXPECT_THAT(text, HasSubstr("     100  short     roof\n"));
+  EXPECT_THAT(prismesh({"check", deck}).out, HasSubstr("    size  name\n")) << "one for all needs no column";
+  const std::string info = prismesh({"info", path("out.k")}).out;
+  EXPECT_THAT(info, HasSubstr("criteria     strict, short by part\n"));
+  EXPECT_THAT(info, HasSubstr("target size 100 mm (guessed), criteria short\n"));
+  EXPECT_EQ(prismesh({"info", path("out.k"), "--json"}).json()["criteria"], "strict");
+  const Outcome unknown = prismesh({"edit", deck, "--edit", R"({"edit": "set_criteria", "criteria": "gone.toml"})", "-o", path("no.k")});
+  EXPECT_EQ(unknown.status, kFailed);
+  EXPECT_THAT(unknown.err, HasSubstr("gone.toml: there is no such file, and no built-in criteria of this name"));
+  EXPECT_FALSE(exists("no.k"));
+}
+
 }  // namespace
 }  // namespace prismesh::cli

@@ -38,12 +38,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (rule.criteria && !mesh::quality::is_built_in_criteria(*rule.criteria)) return 0;  // a file
   const auto document = open("deck.k", {std::make_shared<mesh::deck::Deck>(), model}, options);
   if (!document) return 0;  // an expression that names nothing
-  const std::string text = deck_settings_text(document->current(), document->settings, "deck.k.prismesh.toml");
+  const std::string text = deck_settings_text(document->current(), "deck.k.prismesh.toml");
   const auto again = parse_deck_settings(text, "deck.k.prismesh.toml");
   require(again.has_value());
   options.rules = *again;
   const auto same = open("deck.k", {std::make_shared<mesh::deck::Deck>(), model}, options);
   require(same.has_value());
-  require(deck_settings_text(same->current(), same->settings, "deck.k.prismesh.toml") == text);
+  require(deck_settings_text(same->current(), "deck.k.prismesh.toml") == text);
   return 0;
 }

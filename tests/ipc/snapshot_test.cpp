@@ -81,6 +81,30 @@ TEST(Snapshot, says_what_is_selected_hidden_and_locked) {
   EXPECT_FALSE(locked->info().can_redo);
 }
 
+TEST(Snapshot, says_what_criteria_the_deck_and_its_parts_have) {
+  mesh::document::Document document = grid_document(4, 4);
+  SnapshotPublisher publisher;
+  Reader reader(publisher);
+  const auto usual = reader.map(publisher.publish(document, false).value());
+  EXPECT_EQ(usual->info().criteria, "default") << "nobody chose";
+  EXPECT_EQ(usual->info().parts.at(0).criteria, "");
+  auto judging = std::make_shared<mesh::document::Judging>();
+  const auto same = std::make_shared<const mesh::quality::Criteria>(mesh::quality::default_criteria());
+  judging->criteria = {"/decks/ours.toml", same, std::make_shared<const std::string>()};
+  judging->parts.resize(1);
+  judging->guessed.resize(1);
+  judging->parts[0].criteria = mesh::document::ChosenCriteria{"strict", same, std::make_shared<const std::string>()};
+  settle(*judging);
+  auto next = std::make_shared<mesh::document::Generation>(document.current());
+  next->judging = judging;
+  next->number = document.next_number++;
+  document.generations.push_back(next);
+  document.cursor = 1;
+  const auto chosen = reader.map(publisher.publish(document, false).value());
+  EXPECT_EQ(chosen->info().criteria, "/decks/ours.toml");
+  EXPECT_EQ(chosen->info().parts.at(0).criteria, "strict");
+}
+
 TEST(Snapshot, counts_the_nodes_that_are_there) {
   mesh::document::Document document = grid_document(4, 4);
   auto next = std::make_shared<mesh::document::Generation>(document.current());

@@ -98,6 +98,40 @@ TEST_F(QualityPanel, target_sizes_are_shown_and_guessed_again_by_a_click) {
   EXPECT_EQ(chosen, (std::set<mesh::document::TargetSize>{mesh::document::SizeGuess::part, mesh::document::SizeGuess::deck}));
 }
 
+TEST_F(QualityPanel, criteria_are_chosen_from_the_list_and_given_up_for_the_decks) {
+  facts_.criteria = CriteriaFacts{"default", {{"strict", "7"}}, {"default", "strict", "/decks/ours.toml"}, true};
+  std::set<std::string> chosen;
+  bool listed = false;
+  // A click opens the list, a second one chooses from it or closes it.
+  for (double y = 20; y < kPanelPicture.height; y += 8)
+    for (const double down : {0.0, 28.0, 46.0, 64.0, 82.0, 100.0})
+      for (int clicks = 0; clicks < (down > 0 ? 2 : 1); ++clicks)
+        for (const QualityAction& action : click(200, clicks == 0 ? y : std::min(y + down, kPanelPicture.height - 1.0))) {
+          listed = listed || std::holds_alternative<CriteriaListed>(action);
+          if (const auto* criteria = std::get_if<CriteriaChosen>(&action)) chosen.insert(criteria->criteria);
+        }
+  EXPECT_TRUE(listed);
+  EXPECT_EQ(chosen, (std::set<std::string>{"deck", "default", "strict", "/decks/ours.toml"}));
+}
+
+TEST(CriteriaFactsTest, name_what_is_known_once_and_who_has_criteria_of_their_own) {
+  ipc::SnapshotInfo info;
+  info.criteria = "/decks/ours.toml";
+  for (std::int64_t id = 1; id <= 4; ++id) info.parts.push_back({id, "", false, false, 10, 5, {}, id == 3 ? "" : "strict"});
+  info.parts.push_back({9, "", false, false, 0, 5, {}, "/else/where.toml"});
+  const CriteriaFacts facts = criteria_facts(info, {"/decks/ours.toml", "/decks/theirs.toml"});
+  EXPECT_EQ(facts.of_deck, "/decks/ours.toml");
+  EXPECT_FALSE(facts.of_selection);
+  EXPECT_THAT(facts.known, ::testing::ElementsAre("default", "strict", "skew_and_thickness", "/decks/ours.toml", "/decks/theirs.toml",
+                                                  "/else/where.toml"));
+  EXPECT_THAT(facts.own, ::testing::ElementsAre(std::pair<std::string, std::string>("/else/where.toml", "9"),
+                                                std::pair<std::string, std::string>("strict", "1-2,4")));
+  info.selected_shells = 1;
+  EXPECT_TRUE(criteria_facts(info, {}).of_selection);
+  EXPECT_EQ(short_criteria("/decks/ours.toml"), "ours.toml");
+  EXPECT_EQ(short_criteria("strict"), "strict");
+}
+
 TEST_F(QualityPanel, an_error_is_gone_to_and_named) {
   std::set<std::size_t> errors;
   for (const ErrorClicked& clicked : clicked_down<ErrorClicked>(60)) errors.insert(clicked.error);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "ipc/messages.h"
+#include "kiosk/tools/quality/criteria_facts.h"
 #include "kiosk/tools/quality/mend_limits.h"
 #include "mesh/document/edit.h"
 
@@ -29,6 +30,7 @@ struct QualityFacts {
   MendLimits limits{};
   std::string length_unit;
   std::optional<SizeFacts> sizes;
+  std::optional<CriteriaFacts> criteria;
 };
 
 struct ChooseMetric {
@@ -46,7 +48,13 @@ struct SizeChosen {
   mesh::document::TargetSize size;
 };
 
-using QualityAction = std::variant<ChooseMetric, BarClicked, ErrorClicked, SizeChosen>;
+/// The list of criteria was opened: it needs the files beside the deck.
+struct CriteriaListed {};
+struct CriteriaChosen {
+  std::string criteria;  ///< as SetCriteria takes it
+};
+
+using QualityAction = std::variant<ChooseMetric, BarClicked, ErrorClicked, SizeChosen, CriteriaListed, CriteriaChosen>;
 using QualityActions = std::vector<QualityAction>;
 
 }  // namespace prismesh::kiosk::tools::quality

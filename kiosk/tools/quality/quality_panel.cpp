@@ -10,6 +10,7 @@
 #include "kiosk/panels/text.h"
 #include "kiosk/panels/widgets.h"
 #include "kiosk/tools/key_table.h"
+#include "kiosk/tools/quality/criteria_section.h"
 #include "kiosk/tools/quality/quality_keys.h"
 #include "kiosk/tools/quality/quality_words.h"
 
@@ -194,9 +195,10 @@ void parts_section(const QualityFacts& facts) {
   for (std::size_t i = 0; i < shown; ++i) {
     fact(fmt::format("part {}", parts[i].part).c_str(), fmt::format("{:.2f}, least {:.2f}", parts[i].composite, parts[i].least_composite));
     if (ImGui::IsItemHovered())
-      ImGui::SetTooltip("%s shells, %s warn, %s fail\n1 is ideal, 0 at the fail limit, below 0 it fails\ntarget size %s%s",
+      ImGui::SetTooltip("%s shells, %s warn, %s fail\n1 is ideal, 0 at the fail limit, below 0 it fails\ntarget size %s%s\ncriteria %s",
                         grouped(parts[i].shells).c_str(), grouped(parts[i].warn).c_str(), grouped(parts[i].fail).c_str(),
-                        readable(parts[i].target_size, 4).c_str(), size_source_words(parts[i].size_from));
+                        readable(parts[i].target_size, 4).c_str(), size_source_words(parts[i].size_from),
+                        panels::printable(parts[i].criteria).c_str());
   }
   if (parts.size() > shown) ImGui::TextDisabled("and %s better", grouped(parts.size() - shown).c_str());
 }
@@ -272,6 +274,7 @@ QualityActions quality_panel(const QualityFacts& facts, PanelLayout& layout) {
     parts_section(facts);
   }
   if (facts.sizes) sizes_section(*facts.sizes, actions);
+  if (facts.criteria) criteria_section(*facts.criteria, actions);
   commands_section(facts, layout);
   ImGui::End();
   return actions;

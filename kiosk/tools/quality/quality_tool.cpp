@@ -14,6 +14,7 @@
 #include "kiosk/tools/quality/quality_words.h"
 #include "kiosk/tools/quality/set_limit.h"
 #include "kiosk/tools/tool_set.h"
+#include "mesh/quality/criteria.h"
 
 namespace prismesh::kiosk::tools::quality {
 
@@ -213,6 +214,10 @@ void QualityTool::act(const QualityAction& action) {
     select_bar(*bar);
   else if (const auto* size = std::get_if<SizeChosen>(&action))
     send(context_, mesh::document::SetTargetSize{size->size, std::nullopt});
+  else if (const auto* criteria = std::get_if<CriteriaChosen>(&action))
+    send(context_, mesh::document::SetCriteria{criteria->criteria, std::nullopt, std::nullopt});
+  else if (std::holds_alternative<CriteriaListed>(action))
+    list_criteria();
   else
     go_to_error(std::get<ErrorClicked>(action).error);
 }
@@ -231,6 +236,12 @@ std::optional<SizeFacts> QualityTool::size_facts(const ipc::SnapshotInfo& info) 
   return sizes;
 }
 
+void QualityTool::list_criteria() {
+  if (!context_.shown.snapshot) return;
+  const std::filesystem::path deck = context_.shown.snapshot->info().document;
+  criteria_files_ = mesh::quality::criteria_files_in(deck.parent_path());
+}
+
 void QualityTool::draw_left(PanelLayout& layout) {
   QualityFacts facts;
   facts.figures = link_.figures();
@@ -241,6 +252,7 @@ void QualityTool::draw_left(PanelLayout& layout) {
   facts.limits = limits_;
   facts.length_unit = context_.shown.snapshot->info().length_unit;
   facts.sizes = size_facts(context_.shown.snapshot->info());
+  if (facts.sizes) facts.criteria = criteria_facts(context_.shown.snapshot->info(), criteria_files_);
   for (const QualityAction& action : quality_panel(facts, layout)) layout.ask([this, action] { act(action); });
 }
 

@@ -3,9 +3,11 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "kiosk/panels/entry_box.h"
 #include "kiosk/tools/quality/mend_limits.h"
@@ -47,6 +49,7 @@ class QualityTool final : public Tool {
   void choose_metric(const std::string& metric);
   void select_bar(const BarClicked& bar);
   void act(const QualityAction& action);
+  void list_criteria();
   std::optional<SizeFacts> size_facts(const ipc::SnapshotInfo& info) const;
   double target_size_at(const std::optional<mesh::ShellIndex>& shell) const;
   void step_error(int by);
@@ -60,6 +63,7 @@ class QualityTool final : public Tool {
   std::int64_t error_shell_ = 0;      ///< its shell, by id
   std::int64_t error_node_ = 0;       ///< its node, by id; 0: it is of a shell
   std::optional<mesh::ShellIndex> marked_;
+  std::vector<std::filesystem::path> criteria_files_;  ///< beside the deck, when the list was last opened
   MendLimits limits_;
   std::string limit_problem_;  ///< what is wrong with the number that is being typed
   panels::EntryState entry_;

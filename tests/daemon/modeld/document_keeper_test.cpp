@@ -219,7 +219,8 @@ TEST_P(CarriedAlone, survives_a_save_and_a_restart) {
     const auto facts = [](const DocumentKeeper& keeper) {
       const Generation& now = keeper.document().current();
       return std::tuple(now.parts->at(0).locked, now.parts->at(0).hidden, now.selected_nodes, now.selected_shells,
-                        mesh::live_shells(now.model), now.judging->by_part.of(mesh::PartIndex(0)).target_size);
+                        mesh::live_shells(now.model), now.judging->by_part.of(mesh::PartIndex(0)).target_size,
+                        judged_by(keeper.document()).of(mesh::PartIndex(0)).criteria.name);
     };
     auto killed = std::make_unique<DocumentKeeper>(StateFolder(folder_.state()));
     ASSERT_TRUE(killed->open(request, {}));
@@ -240,14 +241,14 @@ TEST_P(CarriedAlone, survives_a_save_and_a_restart) {
 }
 
 const char* name_of_carried(const ::testing::TestParamInfo<const char*>& info) {
-  constexpr std::array kNames{"Locks", "HiddenParts", "Nodes", "Shells", "TargetSize"};
+  constexpr std::array kNames{"Locks", "HiddenParts", "Nodes", "Shells", "TargetSize", "Criteria"};
   return kNames.at(info.index);
 }
 
 INSTANTIATE_TEST_SUITE_P(Keeping, CarriedAlone,
                          ::testing::Values(R"({"edit":"lock","on":"7"})", R"({"edit":"hide","on":"7"})",
                                            R"({"edit":"select","expr":"1001-1010"})", R"({"edit":"select","expr":"1-10","kind":"element"})",
-                                           R"({"edit":"set_target_size","size":0.125})"),
+                                           R"({"edit":"set_target_size","size":0.125})", R"({"edit":"set_criteria","criteria":"strict"})"),
                          name_of_carried);
 
 TEST_F(Keeping, target_sizes_are_kept_beside_the_deck_at_once) {
@@ -276,6 +277,44 @@ TEST_F(Keeping, target_sizes_are_kept_beside_the_deck_at_once) {
   EXPECT_EQ(size(third), 0.125) << "an undo is kept too";
 }
 
+TEST_F(Keeping, criteria_are_kept_at_once_and_come_back_without_their_file) {
+  const fs::path deck = folder_.sheet(), ours = deck.parent_path() / "ours.toml";
+  const auto criteria = [](const DocumentKeeper& of) { return judged_by(of.document()).of(mesh::PartIndex(0)).criteria.name; };
+  std::ofstream(ours) << "name = \"ours\"\n[metrics.max_length]\nfail_above = 0.01\n";
+  auto killed = std::make_unique<DocumentKeeper>(StateFolder(folder_.state()));
+  ASSERT_TRUE(killed->open(request(deck), {}));
+  const mesh::quality::Counts by_default = killed->state().counts;
+  const Edit gone = mesh::document::parse_edit(R"({"edit":"set_criteria","criteria":"gone.toml"})").value();
+  EXPECT_FALSE(killed->edit(gone));
+  const Edit set = mesh::document::parse_edit(R"({"edit":"set_criteria","criteria":"ours.toml","on":"7"})").value();
+  const Result<EditReport> report = killed->edit(set);
+  ASSERT_TRUE(report) << report.error().text();
+  EXPECT_TRUE(fs::exists(deck.string() + ".prismesh.toml"));
+  const mesh::quality::Counts by_ours = killed->state().counts;
+  EXPECT_EQ(by_ours.fail, mesh::live_shells(killed->document().current().model));
+  killed.reset();
+  fs::remove(ours);
+  DocumentKeeper second = keeper();
+  const Result<bool> reopened = second.reopen({});
+  ASSERT_TRUE(reopened) << reopened.error().text();
+  EXPECT_EQ(criteria(second), "ours");
+  EXPECT_EQ(second.state().counts, by_ours);
+  const auto warnings = second.state().warnings;
+  const auto said = std::find_if(warnings.begin(), warnings.end(), [](const auto& each) { return each.kind == "criteria-not-read"; });
+  ASSERT_NE(said, warnings.end());
+  EXPECT_NE(said->file.find("ours.toml"), std::string::npos);
+  ASSERT_TRUE(second.edit(Undo{}));
+  EXPECT_EQ(criteria(second), "default");
+  EXPECT_EQ(second.state().counts, by_default) << "the first state is that of the first opening";
+  ASSERT_TRUE(second.edit(Redo{}));
+  EXPECT_EQ(criteria(second), "ours");
+  ASSERT_TRUE(second.close(true));
+  DocumentKeeper third = keeper();
+  const Result<bool> refused = third.open(request(deck), {});
+  ASSERT_FALSE(refused) << "without unsaved edits nothing has the file's content";
+  EXPECT_NE(refused.error().text().find("ours.toml"), std::string::npos);
+}
+
 TEST_F(Keeping, rules_of_the_request_count_more_than_the_file) {
   const fs::path deck = folder_.sheet();
   std::ofstream(deck.string() + ".prismesh.toml") << "target_size = 3\n";
@@ -295,12 +334,12 @@ TEST_F(Keeping, the_users_unit_and_criteria_are_those_of_the_document) {
   DocumentKeeper strict = keeper();
   ASSERT_TRUE(strict.open(asked, {}));
   EXPECT_EQ(strict.state().length_unit, "m");
-  EXPECT_EQ(strict.document().settings.criteria.name, "strict");
+  EXPECT_EQ(strict.document().current().judging->criteria.criteria->name, "strict");
   ASSERT_TRUE(strict.close(false));
   DocumentKeeper usual = keeper();
   ASSERT_TRUE(usual.open(request(folder_.sheet()), {}));
   EXPECT_EQ(usual.state().length_unit, "mm");
-  EXPECT_NE(usual.document().settings.criteria.name, "strict");
+  EXPECT_NE(usual.document().current().judging->criteria.criteria->name, "strict");
   ASSERT_TRUE(usual.close(false));
   asked.length_unit = "feet";
   const auto refused = usual.open(asked, {});

@@ -142,8 +142,7 @@ TEST_F(Figures, bars_have_equal_width_end_at_the_limit_and_show_their_shells_sta
   const std::vector<ipc::QualityBar>& bars = quality.bars;
   ASSERT_GT(bars.size(), 10u);
   const double width = bars[0].to - bars[0].from;
-  const double min_failing =
-      mesh::quality::threshold_of({document_.settings.criteria, document_.settings.target_size}, metric, false, {}).fail_high;
+  const double min_failing = mesh::quality::threshold_of(judged_by(document_), metric, false, {}).fail_high;
   EXPECT_GT(bars.back().to, min_failing) << "what fails can be seen";
   std::uint64_t ok = 0, warn = 0, fail = 0;
   for (std::size_t b = 0; b < bars.size(); ++b) {

@@ -163,7 +163,7 @@ TEST(Clusters, come_back_with_the_journal) {
   const auto delta = encode_delta(before, document.current());
   const Result<NodeSet> moved = apply_delta(delta, again);
   ASSERT_TRUE(moved);
-  settle_growth(document.settings, before, *moved, again);
+  settle_growth(before, *moved, again);
   EXPECT_EQ(*again.clusters, *document.current().clusters);
   EXPECT_EQ(before.clusters->size(), 9u);
 }

@@ -120,7 +120,7 @@ TEST_F(HangingTest, a_drag_carries_what_its_edit_carries) {
         R"({"edit":"rotate","point":[0,0,0],"axis":[0,0,1],"degrees":0,"on":"part:1"})", R"({"edit":"slide","by":[0,0,0],"on":"part:1"})",
         R"({"edit":"lift","distance":0,"normals":"each","on":"part:1"})"}) {
     Document one = document;
-    Result<Drag> drag = Drag::begin(one.generations[one.cursor], one.settings, edit_of(json));
+    Result<Drag> drag = Drag::begin(one.generations[one.cursor], edit_of(json));
     ASSERT_TRUE(drag) << drag.error().text();
     Displacement far;
     far.by = Vec3(0.5, 0.25, 0.125);

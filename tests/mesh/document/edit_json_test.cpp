@@ -36,6 +36,8 @@ TEST(EditJson, every_edit_reads_its_example) {
           R"({"edit":"unlock"})",
           R"({"edit":"set_target_size","size":5.5,"on":"3"})",
           R"({"edit":"set_target_size","size":"deck"})",
+          R"({"edit":"set_criteria","criteria":"strict"})",
+          R"({"edit":"set_criteria","criteria":"ours.toml","on":"3","text":"name = \"ours\"\n"})",
           R"({"edit":"translate","by":[0,0,1],"on":"1-100","grab":7,"falloff":{"profile":"gaussian","flat":0.5,"along":[1,0,0]},"free_ends":false,"origin":"free_edge","max_move":2})",
           R"({"edit":"lift","distance":-2.5,"normals":"each","grab":[1,2,3],"on":{"edit":"select_region","at":[0,0,0],"angle":20}})",
           R"({"edit":"slide","by":[3,0,0],"grab":7,"max_move":2,"across_welds":true})",
@@ -113,6 +115,9 @@ TEST(EditJson, names_the_wrong_type) {
   EXPECT_THAT(why_not(R"({"edit":"lift","distance":1,"max_move":0})"), HasSubstr("greater than 0"));
   EXPECT_THAT(why_not(R"({"edit":"lift","distance":1,"falloff":{"along":[0,0,0]}})"), HasSubstr("must be a direction"));
   EXPECT_THAT(why_not(R"({"edit":"lift"})"), HasSubstr("lift needs the field \"distance\""));
+  EXPECT_EQ(why_not(R"({"edit":"set_criteria","criteria":5})"), "set_criteria: \"criteria\" must be a text in quotes, not the number 5");
+  EXPECT_THAT(why_not(R"({"edit":"set_criteria"})"), HasSubstr("set_criteria needs the field \"criteria\""));
+  EXPECT_THAT(why_not(R"({"edit":"set_criteria","criterion":"strict"})"), HasSubstr("the nearest is \"criteria\""));
   EXPECT_THAT(why_not(R"({"distance":1})"), HasSubstr("\"edit\" is missing"));
   EXPECT_THAT(why_not("[1]"), HasSubstr("an edit is an object"));
 }

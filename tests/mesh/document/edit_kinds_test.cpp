@@ -36,7 +36,8 @@ TEST(EditKinds, each_alternative_of_edit_has_a_kind_and_each_kind_its_own_name) 
 
 TEST(EditKinds, groups_say_what_an_edit_changes) {
   EXPECT_THAT(names_of(EditGroup::selection), ElementsAre("grow", "invert", "select", "select_lasso", "select_region", "shrink"));
-  EXPECT_THAT(names_of(EditGroup::parts), ElementsAre("hide", "lock", "only", "reverse", "set_target_size", "show", "unlock"));
+  EXPECT_THAT(names_of(EditGroup::parts),
+              ElementsAre("hide", "lock", "only", "reverse", "set_criteria", "set_target_size", "show", "unlock"));
   EXPECT_THAT(names_of(EditGroup::shaping), ElementsAre("lift", "rotate", "slide", "translate"));
   EXPECT_THAT(names_of(EditGroup::mending), ElementsAre("collapse", "merge", "relax", "repair", "split", "swap"));
   EXPECT_THAT(names_of(EditGroup::step), ElementsAre("redo", "undo"));
@@ -67,6 +68,8 @@ TEST(EditKinds, say_what_they_have_to_do_with_the_selection) {
   EXPECT_EQ(use(R"({"edit":"invert"})"), "readswrites");
   EXPECT_EQ(use(R"({"edit":"hide"})"), "reads");
   EXPECT_EQ(use(R"({"edit":"hide","on":"1"})"), "");
+  EXPECT_EQ(use(R"({"edit":"set_criteria","criteria":"strict"})"), "reads");
+  EXPECT_EQ(use(R"({"edit":"set_criteria","criteria":"strict","on":"1"})"), "");
   EXPECT_EQ(use(R"({"edit":"translate","by":[1,0,0]})"), "reads");
   EXPECT_EQ(use(R"({"edit":"lift","distance":1,"on":"5"})"), "");
   EXPECT_EQ(use(R"({"edit":"relax","mode":"from","at":1})"), "reads");

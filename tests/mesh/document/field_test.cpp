@@ -155,7 +155,7 @@ TEST(FieldTest, added_and_removed_nodes) {
   EXPECT_FLOAT_EQ(off->values[added.value], 1) << "an added node lies off the old surface";
   const std::size_t lone = now.node_count() - 2;  // the sheet's last corner: its only shell is gone
   EXPECT_TRUE(std::isnan(off->values[lone]));
-  const auto warpage = metric_field(now, quality::Metric::warpage, DocumentSettings{});
+  const auto warpage = metric_field(now, quality::Metric::warpage, {quality::Criteria{}, 1}, mm);
   ASSERT_TRUE(warpage);
   EXPECT_TRUE(std::isnan(warpage->values[15])) << "a removed shell";
   EXPECT_TRUE(std::isnan(warpage->values[0])) << "a triangle has no warpage";
@@ -191,7 +191,7 @@ TEST(FieldTest, what_is_no_number_counts_for_nothing) {
     EXPECT_DOUBLE_EQ(field->figures.max, 2);
     EXPECT_EQ(shells_without_value(now, *field), 4u) << "the shells at the node";
   }
-  const auto warpage = metric_field(now, quality::Metric::warpage, DocumentSettings{});
+  const auto warpage = metric_field(now, quality::Metric::warpage, {quality::Criteria{}, 1}, mm);
   ASSERT_TRUE(warpage);
   EXPECT_TRUE(std::isfinite(warpage->figures.mean));
 }
@@ -200,12 +200,12 @@ TEST(FieldTest, what_is_no_shell_has_no_metric) {
   Model model = flat_sheet(4, 4, 0);
   model.positions.set(6, model.position(NodeIndex(std::size_t{7})));  // two shells have an edge without length
   for (const quality::Metric metric : {quality::Metric::aspect, quality::Metric::min_length, quality::Metric::jacobian}) {
-    const auto field = metric_field(model, metric, DocumentSettings{});
+    const auto field = metric_field(model, metric, {quality::Criteria{}, 1}, mm);
     ASSERT_TRUE(field);
     EXPECT_EQ(field->figures.measured, 14u);
     EXPECT_EQ(shells_without_value(model, *field), 2u);
   }
-  EXPECT_LT(metric_field(model, quality::Metric::aspect, DocumentSettings{})->figures.max, 5);
+  EXPECT_LT(metric_field(model, quality::Metric::aspect, {quality::Criteria{}, 1}, mm)->figures.max, 5);
 }
 
 TEST(FieldTest, nothing_to_measure_is_a_sentence) {
@@ -215,7 +215,7 @@ TEST(FieldTest, nothing_to_measure_is_a_sentence) {
   EXPECT_FALSE(surface_distance_field(empty, sheet, mm));
   EXPECT_FALSE(surface_distance_field(sheet, empty, mm));
   EXPECT_FALSE(gap_field(sheet, {}, {}, mm));
-  EXPECT_FALSE(metric_field(sheet, quality::Metric::min_angle_tri, DocumentSettings{})) << "there are no triangles";
+  EXPECT_FALSE(metric_field(sheet, quality::Metric::min_angle_tri, {quality::Criteria{}, 1}, mm)) << "there are no triangles";
   const auto step = time_step_field(sheet, {});
   ASSERT_FALSE(step);
   EXPECT_NE(step.error().message.find("no time step"), std::string::npos);
@@ -250,25 +250,23 @@ TEST(FieldTest, a_measurement_stops_when_told_and_needs_what_it_compares_with) {
 }
 
 TEST(FieldTest, metrics_are_those_of_the_shells) {
-  DocumentSettings settings;
-  settings.criteria = quality::default_criteria();
-  settings.target_size = 5;
+  const quality::SizedCriteria criteria{quality::default_criteria(), 5};
   Model model = flat_sheet(3, 3, 0);
   model.positions.set(5, Vec3(model.positions[5] + Vec3(0, 0, 1.5)));
   std::vector<quality::Values> values(model.shell_count());
   quality::measure_range(model, 0, model.shell_count(), values);
   for (const quality::Metric metric : {quality::Metric::warpage, quality::Metric::skew, quality::Metric::min_length}) {
-    const auto field = metric_field(model, metric, settings);
+    const auto field = metric_field(model, metric, criteria, mm);
     ASSERT_TRUE(field);
     EXPECT_FALSE(field->on_nodes);
     for (std::size_t s = 0; s < model.shell_count(); ++s) EXPECT_EQ(field->values[s], values[s][static_cast<std::size_t>(metric)]);
     EXPECT_NE(field->limits.clear, field->limits.full);
   }
-  const auto warpage = metric_field(model, quality::Metric::warpage, settings);
+  const auto warpage = metric_field(model, quality::Metric::warpage, criteria, mm);
   EXPECT_LT(warpage->limits.clear, warpage->limits.full);
-  const auto length = metric_field(model, quality::Metric::min_length, settings);
+  const auto length = metric_field(model, quality::Metric::min_length, criteria, mm);
   EXPECT_GT(length->limits.clear, length->limits.full) << "small ones are the worse ones";
-  const auto composite = composite_field(model, settings);
+  const auto composite = composite_field(model, criteria);
   ASSERT_TRUE(composite);
   EXPECT_LT(composite->figures.min, composite->figures.max);
 }

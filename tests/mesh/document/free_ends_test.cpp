@@ -79,7 +79,7 @@ TEST(FreeEnds, of_a_drag_are_those_of_its_edit) {
        {R"({"edit":"lift","distance":0,"grab":118,)", R"({"edit":"rotate","point":[120,0,0],"axis":[0,1,0],"degrees":0,"grab":118,)",
         R"({"edit":"translate","by":[0,0,0],"grab":13,"origin":"free_edge",)"}) {
     Document document = make_strip();
-    Result<Drag> drag = Drag::begin(document.generations[0], document.settings, edit_of(std::string(text) + kFrom50 + "}"));
+    Result<Drag> drag = Drag::begin(document.generations[0], edit_of(std::string(text) + kFrom50 + "}"));
     ASSERT_TRUE(drag) << drag.error().text();
     drag->step({Vec3(1, 2, 3), 4, 5});
     ASSERT_TRUE(try_apply(document, drag->edit()));

@@ -350,6 +350,22 @@ TEST(JournalOfAnother, the_same_deck_read_differently_is_refused) {
   EXPECT_TRUE(Journal::recover(folder / "a.journal", document));
 }
 
+TEST(JournalOfAnother, criteria_that_cant_be_used_are_refused) {
+  const Folder folder;
+  const auto recovered = [&](const JournalHeader::ChosenOn& chosen) {
+    JournalHeader header = header_for(small());
+    header.settings.chosen_criteria = {{std::nullopt, "", ""}, chosen};
+    put_content(folder / "a.journal", header_text(header));
+    Document document = small();
+    const Result<Journal> journal = Journal::recover(folder / "a.journal", document);
+    return journal ? judged_by(document).of(PartIndex(0)).criteria.name : journal.error().message;
+  };
+  EXPECT_EQ(recovered({"all", "ours.toml", "name = \"ours\"\n"}), "ours");
+  EXPECT_EQ(recovered({"all", "ours.toml", "nam = \"ours\"\n"}),
+            "its criteria can't be used: ours.toml:1: a criteria file has no \"nam\"; the nearest known is \"name\"");
+  EXPECT_THAT(recovered({"999", "ours.toml", ""}), testing::StartsWith("its criteria can't be used: expression:1: "));
+}
+
 TEST(JournalOfAnother, a_record_that_does_not_fit_names_its_edit_and_its_line) {
   struct Case {
     Prepared::Step step;

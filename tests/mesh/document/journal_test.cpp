@@ -207,15 +207,15 @@ TEST(Journal, takes_over_guessed_settings_only) {
   OpenOptions too_large;
   too_large.target_size = 77.0;
   Document guessed = open("model.k", {small().deck, small().opened->model}, too_large).value();
-  guessed.settings.target_size_guessed = true;
+  guessed.settings.sizes_given = false;
   ASSERT_NE(guessed.current().counts, small().current().counts);
   ASSERT_TRUE(Journal::recover(session.path, guessed));
   EXPECT_EQ(guessed.settings.target_size, 5.0);
   EXPECT_EQ(guessed.current().counts, session.after.back().current().counts);
-  Document told = small();
-  told.settings.target_size = 1000;
+  Document told = open("model.k", {small().deck, small().opened->model}, too_large).value();
   ASSERT_TRUE(Journal::recover(session.path, told));
-  EXPECT_EQ(told.settings.target_size, 1000);
+  EXPECT_EQ(told.settings.target_size, 77);
+  EXPECT_EQ(told.opened->judging->deck_size, 77);
   ASSERT_EQ(small().settings.length_unit, LengthUnit::mm);
   for (const bool is_guess : {true, false}) {
     Document in_metres = small();

@@ -2,7 +2,6 @@
 #include "mesh/document/judging.h"
 
 #include <algorithm>
-#include <cstdio>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,7 +12,7 @@
 #include "mesh/document/drag.h"
 #include "mesh/document/journal.h"
 #include "mesh/document/make_field.h"
-#include "tests/mesh/document/document_fixture.h"
+#include "tests/mesh/document/two_plates.h"
 
 namespace prismesh::mesh::document {
 namespace {
@@ -21,67 +20,6 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-
-/// Plates of 6 x 5 quads of 5 and of 60, parts 1 and 2, and a quad of 5 by itself, part 3. Node ids 101.. and 201.., shells likewise.
-Model two_plates() {
-  std::vector<test::NodeSpec> nodes;
-  std::vector<test::ShellSpec> shells;
-  for (std::int64_t part = 1; part <= 2; ++part) {
-    const double size = part == 1 ? 5 : 60;
-    for (int j = 0; j <= 5; ++j)
-      for (int i = 0; i <= 6; ++i)
-        nodes.push_back({100 * part + 1 + i + 7 * j, Vec3(size * i, size * j, 100.0 * static_cast<double>(part))});
-    for (int j = 0; j < 5; ++j)
-      for (int i = 0; i < 6; ++i) {
-        const std::int64_t corner = 100 * part + 1 + i + 7 * j;
-        shells.push_back({100 * part + 1 + i + 6 * j, part, {corner, corner + 1, corner + 8, corner + 7}});
-      }
-  }
-  for (int n = 0; n < 4; ++n) nodes.push_back({301 + n, Vec3(n == 1 || n == 2 ? 5 : 0, n > 1 ? 5 : 0, 900)});
-  shells.push_back({301, 3, {301, 302, 303, 304}});
-  return test::make_model(nodes, shells);
-}
-
-Result<Document> opened_with(OpenOptions options, const std::filesystem::path& path = "model.k") {
-  auto deck = std::make_shared<deck::Deck>();
-  deck->content = {9, 0};
-  options.length_unit = LengthUnit::mm;
-  return open(path, {deck, two_plates()}, options);
-}
-
-Document plates(std::vector<JudgingRule> rules = {}) {
-  OpenOptions options;
-  options.rules = std::move(rules);
-  Result<Document> document = opened_with(options);
-  EXPECT_TRUE(document) << document.error().text();
-  return std::move(*document);
-}
-
-JudgingRule rule(std::optional<std::string> on, std::optional<TargetSize> size, std::optional<std::string> criteria = std::nullopt) {
-  return {std::move(on), size, std::move(criteria), "", 0};
-}
-
-std::vector<double> sizes_of(const Document& document) {
-  std::vector<double> sizes;
-  for (std::size_t p = 0; p < document.current().model.parts->size(); ++p)
-    sizes.push_back(judged_by(document).of(PartIndex(p)).target_size);
-  return sizes;
-}
-
-std::vector<std::string> criteria_of(const Document& document) {
-  std::vector<std::string> names;
-  for (std::size_t p = 0; p < document.current().model.parts->size(); ++p)
-    names.push_back(judged_by(document).of(PartIndex(p)).criteria.name);
-  return names;
-}
-
-/// The states of the current generation, judged from the start.
-void expect_judged(const Document& document) {
-  const Generation& now = document.current();
-  const auto fresh = quality::judge_model(now.model, judged_by(document));
-  EXPECT_TRUE(same_bytes(now.quality, fresh));
-  EXPECT_EQ(now.counts, quality::count(fresh));
-}
 
 TEST(Judging, without_settings_each_part_has_its_own_median_edge) {
   const Document document = plates();
@@ -182,7 +120,7 @@ TEST(SetTargetSize, drags_and_fields_judge_by_it) {
   Document document = plates();
   must_apply(document, R"({"edit": "set_target_size", "size": 20, "on": "2"})");
   const Edit edit = edit_of(R"({"edit": "translate", "by": [0, 0, 0], "on": "201-242", "falloff": {"profile": "constant"}})");
-  Result<Drag> drag = Drag::begin(document.generations[document.cursor], document.settings, edit);
+  Result<Drag> drag = Drag::begin(document.generations[document.cursor], edit);
   ASSERT_TRUE(drag) << drag.error().text();
   drag->step({Vec3(1, 0, 0), 0, 0});
   EXPECT_EQ(drag->counts(), document.current().counts);
@@ -222,7 +160,7 @@ TEST(SetTargetSize, comes_back_with_the_journal_and_with_a_replay) {
   ASSERT_TRUE(Journal::recover(path, recovered));
   expect_same(live, recovered);
   EXPECT_EQ(sizes_of(recovered), sizes_of(live));
-  EXPECT_EQ(deck_settings_text(recovered.current(), recovered.settings, "x"), deck_settings_text(live.current(), live.settings, "x"));
+  EXPECT_EQ(deck_settings_text(recovered.current(), "x"), deck_settings_text(live.current(), "x"));
   Document replayed = plates();
   for (const ReplayStep& step : replay(replayed, read_intents(path).value())) EXPECT_TRUE(step.applied) << step.message;
   EXPECT_TRUE(same_bytes(replayed.current().quality, live.current().quality));
@@ -243,25 +181,6 @@ TEST(SetTargetSize, a_recovery_takes_the_sizes_that_the_journal_was_begun_with) 
   Document told = plates({rule("1", 9.0)});
   ASSERT_TRUE(Journal::recover(path, told));
   EXPECT_THAT(sizes_of(told), ElementsAre(9, 60, 5)) << "what the user says now counts";
-}
-
-/// An LS-DYNA deck of two plates of 10 x 8 quads, parts 1 and 2; the second is the first, 16 times as large. Multiplying by 16 is exact.
-std::string plate_and_larger_one() {
-  std::string nodes = "*KEYWORD\n*NODE\n", shells = "*ELEMENT_SHELL\n";
-  char line[96];
-  for (int part = 1; part <= 2; ++part) {
-    const int by = part == 1 ? 1 : 16;
-    for (int n = 0; n < 99; ++n) {
-      std::snprintf(line, sizeof line, "%8d%16d%16d%16d\n", 1000 * part + n, by * 5 * (n % 11), by * 5 * (n / 11), by * 100);
-      nodes += line;
-    }
-    for (int s = 0; s < 80; ++s) {
-      const int corner = 1000 * part + s % 10 + 11 * (s / 10);
-      std::snprintf(line, sizeof line, "%8d%8d%8d%8d%8d%8d\n", 1000 * part + s, part, corner, corner + 1, corner + 12, corner + 11);
-      shells += line;
-    }
-  }
-  return nodes + shells + "*END\n";
 }
 
 /// What the parts look like after the same edits: a part's shells by corners, in the smaller one's coordinates.
@@ -332,7 +251,7 @@ TEST(DeckSettings, what_is_written_is_read_again) {
   const Folder folder;
   const std::filesystem::path deck = folder / "car.k";
   Document document = plates({rule("1", 4.5), rule("2", SizeGuess::deck, "strict"), rule("3", 4.5)});
-  ASSERT_TRUE(write_deck_settings(document.current(), document.settings, deck));
+  ASSERT_TRUE(write_deck_settings(document.current(), deck));
   EXPECT_EQ(content_of(folder / "car.k.prismesh.toml"),
             "# What the shells of this deck are judged by: docs/quality/criteria.md. Prismesh writes this file anew.\n"
             "target_size = \"part\"\n\n[[parts]]\non = \"2\"\ntarget_size = \"deck\"\ncriteria = \"strict\"\n\n[[parts]]\non = \"1,3\"\n"
@@ -353,7 +272,7 @@ TEST(DeckSettings, a_criteria_file_is_found_from_the_settings_folder) {
   const std::filesystem::path deck = folder / "car.k";
   put_content(folder / "ours.toml", "name = \"ours\"\n[metrics.aspect]\nfail_above = 3\n");
   Document document = plates({rule(std::nullopt, std::nullopt, (folder / "ours.toml").string())});
-  ASSERT_TRUE(write_deck_settings(document.current(), document.settings, deck));
+  ASSERT_TRUE(write_deck_settings(document.current(), deck));
   EXPECT_THAT(content_of(folder / "car.k.prismesh.toml"), HasSubstr("criteria = \"ours.toml\"\n"));
   EXPECT_THAT(criteria_of(opened_with({}, deck).value()), ElementsAre("ours", "ours", "ours"));
 }
@@ -361,7 +280,7 @@ TEST(DeckSettings, a_criteria_file_is_found_from_the_settings_folder) {
 TEST(DeckSettings, nothing_chosen_writes_no_file) {
   const Folder folder;
   const Document document = plates();
-  ASSERT_TRUE(write_deck_settings(document.current(), document.settings, folder / "car.k"));
+  ASSERT_TRUE(write_deck_settings(document.current(), folder / "car.k"));
   EXPECT_FALSE(std::filesystem::exists(folder / "car.k.prismesh.toml"));
 }
 

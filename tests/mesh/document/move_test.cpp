@@ -80,8 +80,7 @@ TEST(Move, counts_follow) {
   EXPECT_EQ(report.after, document.current().counts);
   EXPECT_EQ(report.after.fail, 4u);
   EXPECT_EQ(quality::count(document.current().quality), document.current().counts);
-  EXPECT_TRUE(same_bytes(document.current().quality,
-                         quality::judge_model(document.current().model, {document.settings.criteria, document.settings.target_size})));
+  EXPECT_TRUE(same_bytes(document.current().quality, quality::judge_model(document.current().model, judged_by(document))));
 }
 
 TEST(Move, held_nodes_refuse) {
@@ -210,7 +209,7 @@ TEST(Drag, shows_bit_for_bit_what_the_edit_will_do) {
                            R"({"edit":"lift","distance":0,"on":"1000-5000","grab":[200,190,3],"falloff":{"profile":"root"}})",
                            R"({"edit":"lift","distance":0,"on":"1-8281","normals":"each","free_ends":false})"}) {
     Document document = make_wavy(90);
-    Result<Drag> drag = Drag::begin(document.generations[document.cursor], document.settings, edit_of(text));
+    Result<Drag> drag = Drag::begin(document.generations[document.cursor], edit_of(text));
     ASSERT_TRUE(drag) << drag.error().text();
     EXPECT_EQ(drag->counts(), document.current().counts);
     for (const double size : {50.5, -72.25, 31.1}) {
@@ -234,7 +233,7 @@ TEST(Drag, judges_a_triangle_whose_third_corner_stays_as_a_triangle) {
   // nearly equilateral: fine as a triangle, but its angle of 180 degrees would fail in a quad
   const Model model = test::make_shells({{0, 0, 0}, {5, 0, 0}, {2.5, 4.5, 0}}, {{0, 1, 2, 2}});
   Document document = make_document(model);
-  Result<Drag> drag = Drag::begin(document.generations[0], document.settings, edit_of(R"({"edit":"translate","by":[0,0,0],"on":"1-2"})"));
+  Result<Drag> drag = Drag::begin(document.generations[0], edit_of(R"({"edit":"translate","by":[0,0,0],"on":"1-2"})"));
   ASSERT_TRUE(drag) << drag.error().text();
   drag->step({Vec3(0, -0.1, 0), 0, 0});
   ASSERT_EQ(drag->states().size(), 1u);
@@ -245,8 +244,7 @@ TEST(Drag, judges_a_triangle_whose_third_corner_stays_as_a_triangle) {
 TEST(Drag, nothing_is_kept) {
   Document document = make_sheet(6, 6);
   const std::shared_ptr<const Generation> before = document.generations[0];
-  Result<Drag> drag =
-      Drag::begin(before, document.settings, edit_of(R"({"edit":"lift","distance":9,"on":"1-49","grab":25,"free_ends":false})"));
+  Result<Drag> drag = Drag::begin(before, edit_of(R"({"edit":"lift","distance":9,"on":"1-49","grab":25,"free_ends":false})"));
   ASSERT_TRUE(drag);
   EXPECT_EQ(std::abs(drag->normal().z()), 1);
   EXPECT_EQ(document.current().model.node_ids[drag->grab().value], 25);
@@ -260,7 +258,7 @@ TEST(Drag, refuses_as_the_edit_does) {
   Document document = make_document(make_assembly());
   must_apply(document, R"({"edit":"lock","on":"1"})");
   const auto refuse = [&](const char* text) {
-    const Result<Drag> drag = Drag::begin(document.generations[1], document.settings, edit_of(text));
+    const Result<Drag> drag = Drag::begin(document.generations[1], edit_of(text));
     return drag ? "" : drag.error().text();
   };
   EXPECT_THAT(refuse(R"({"edit":"translate","by":[0,0,1],"on":"100"})"), HasSubstr("locked part 1"));

@@ -40,7 +40,7 @@ TEST(Relax, makes_what_a_slide_crushed_fine_again) {
   EXPECT_GT(report.nodes_moved, 0u);
   EXPECT_THAT(report.notes, Contains(HasSubstr("at rest after")));
   EXPECT_EQ(document.current().surface, surface);  // relaxing doesn't shape
-  EXPECT_EQ(document.current().counts, quality::count(quality::judge_model(document.current().model, {document.settings.criteria, 5})));
+  EXPECT_EQ(document.current().counts, quality::count(quality::judge_model(document.current().model, judged_by(document))));
   for (std::size_t n = 0; n < document.current().model.node_count(); ++n) EXPECT_NEAR(document.current().model.positions[n].z(), 0, 1e-12);
   must_apply(document, R"({"edit":"undo"})");
   EXPECT_EQ(document.current().counts.fail, report.before.fail);

@@ -168,7 +168,7 @@ TEST(Shaping, a_drag_shows_bit_for_bit_what_its_edit_will_do) {
       const std::string text = "{" + kind + R"(,"on":"500-1200")" + option + "}";
       SCOPED_TRACE(text);
       Document document = make_document(wavy_with_midsides());
-      Result<Drag> drag = Drag::begin(document.generations[0], document.settings, edit_of(text));
+      Result<Drag> drag = Drag::begin(document.generations[0], edit_of(text));
       ASSERT_TRUE(drag) << drag.error().text();
       drag->step({Vec3(9, 9, 9), 9, 90});  // what came before doesn't count
       for (const double size : {7.7, -19.1}) {
@@ -200,7 +200,7 @@ TEST(Shaping, a_drag_shows_bit_for_bit_what_its_edit_will_do) {
 TEST(Shaping, a_drag_passes_over_what_no_coordinate_holds) {
   Document document = make_sheet(6, 6);
   for (const std::string& kind : kKinds) {
-    Result<Drag> drag = Drag::begin(document.generations[0], document.settings, edit_of("{" + kind + R"(,"on":"1-49","grab":25})"));
+    Result<Drag> drag = Drag::begin(document.generations[0], edit_of("{" + kind + R"(,"on":"1-49","grab":25})"));
     ASSERT_TRUE(drag);
     drag->step({Vec3(1, 1, 0), 2, 3});
     const std::vector<Vec3> positions = drag->positions();

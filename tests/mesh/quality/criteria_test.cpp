@@ -1,6 +1,9 @@
 #include "mesh/quality/criteria.h"
 
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <random>
 
 #include <gmock/gmock.h>
@@ -186,6 +189,27 @@ TEST(Criteria, of_our_own_are_known_by_name) {
     }
   }
   EXPECT_LE(strict.fail_triangles_percent, default_criteria().fail_triangles_percent);
+}
+
+TEST(Criteria, files_of_a_folder_are_listed_if_they_are_criteria) {
+  std::string pattern = (std::filesystem::temp_directory_path() / "prismesh-criteria-XXXXXX").string();
+  ASSERT_NE(::mkdtemp(pattern.data()), nullptr);
+  const std::filesystem::path folder = pattern;
+  const auto put = [&](const char* name, const std::string& text) { std::ofstream(folder / name) << text; };
+  put("b.toml", "[metrics.skew]\nfail_above = 3\n");
+  put("a.toml", "name = \"ours\"\n");
+  put("notes.txt", "name = \"x\"\n");
+  put("other.toml", "[package]\nname = \"x\"\n");
+  put("deck.k.prismesh.toml", "");
+  put("large.toml", std::string(kMaxCriteriaBytes + 1, '\n'));
+  std::filesystem::create_directory(folder / "folder.toml");
+  EXPECT_THAT(criteria_files_in(folder), ::testing::ElementsAre(folder / "a.toml", folder / "b.toml"));
+  EXPECT_THAT(criteria_files_in(folder / "gone"), ::testing::IsEmpty());
+  EXPECT_EQ(load_criteria(folder / "a.toml")->name, "ours");
+  EXPECT_EQ(load_criteria(folder / "b.toml")->name, "b.toml") << "without a name it is that of the file";
+  EXPECT_EQ(load_criteria(folder / "large.toml").error().message, "a criteria file has at most 1 MiB");
+  EXPECT_THAT(built_in_criteria(), ::testing::ElementsAre("default", "strict", "skew_and_thickness"));
+  std::filesystem::remove_all(folder);
 }
 
 TEST(Criteria, mistakes_are_named_with_their_line) {
