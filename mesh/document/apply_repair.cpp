@@ -53,6 +53,7 @@ void note_triangle_pairs(const repair::Repaired& repaired, EditReport& report) {
 void note_unrepaired(const repair::Repaired& repaired, const Frozen& frozen, const Model& model, EditReport& report) {
   if (repaired.unrepaired.empty()) return;
   report.notes.push_back(counted(repaired.unrepaired.size(), "element") + " still " + (repaired.unrepaired.size() == 1 ? "fails" : "fail"));
+  if (repaired.stopped) return;  // most of them weren't tried, so there are no reasons
   for (std::size_t i = 0; i < std::min(repaired.unrepaired.size(), kMaxNamedInRepair); ++i) {
     const repair::Unrepaired& left = repaired.unrepaired[i];
     const auto known = frozen.shells.find(left.shell);
@@ -65,6 +66,7 @@ void note_clusters_left(const repair::Repaired& repaired, const Model& model, Ed
   const std::vector<repair::ClusterLeft>& left = repaired.clusters_left;
   if (left.empty()) return;
   report.notes.push_back(crowded(left.size()) + (left.size() == 1 ? " stays" : " stay"));
+  if (repaired.stopped) return;
   for (std::size_t i = 0; i < std::min(left.size(), kMaxNamedInRepair); ++i)
     report.notes.push_back((left[i].node.valid() ? "node:" + std::to_string(model.node_ids[left[i].node.value]) : "a new node") + ": " +
                            std::to_string(left[i].triangles) + " triangles; " + left[i].why);
@@ -120,7 +122,7 @@ Result<repair::Repaired> repair_writable(RepairTask& task, const ShellSet& scope
     if (progress && !progress(furthest, further(attempt, doing))) is_told_to_stop = true;
     return !is_told_to_stop;
   };
-  const auto keeps = [&] { return edit.on_cancel == OnCancel::keep || progress.keeps(); };
+  const auto keeps = [&] { return task.edit.on_cancel == OnCancel::keep || progress.keeps(); };
   for (;; ++attempt) {
     options.stop_at.reset();
     if (edit.stop_at && edit.stop_at->attempt == attempt) options.stop_at = edit.stop_at->step;
