@@ -159,6 +159,8 @@ void add_writing_commands(Parser& parser) {
   add_optional(edit_app, "--script", edit_options->script, "a file of edits, one JSON object per line; they follow those of --edit");
   names_file(edit_app->add_option("-o,--output", edit_options->output, "the main file to write"))->required();
   add_optional(edit_app, "--journal", edit_options->journal, "also write a journal of the edits to this file");
+  edit_app->add_flag("--keep-on-cancel", edit_options->keep_on_cancel,
+                     "if a repair is stopped by Ctrl-C, write what it has reached; the exit status is 1");
 
   const auto [replay_app, replay_options] = add_command<ReplayOptions>(parser, "replay", "apply a journal's edits to a deck again", replay);
   names_file(replay_app->add_option("JOURNAL", replay_options->journal, "a journal, or a file of edits"))->required();
@@ -228,6 +230,8 @@ void add_session(Parser& parser) {
   CLI::App* edit_app = add("edit", Action::edit, "edit the open document");
   edit_app->add_option("EDIT", options->edits, "an edit as JSON; may be repeated");
   add_optional(edit_app, "--script", options->script, "a file of edits, one JSON object per line; they follow the others");
+  edit_app->add_flag("--keep-on-cancel", options->keep_on_cancel,
+                     "if a repair is stopped by Ctrl-C, keep what it has reached; the exit status is 1");
   add_optional(add("save", Action::save, "save the document"), "OUT", options->output, "the main file to write (default: in place)");
   add("state", Action::state, "print what is open");
   add("undo", Action::undo, "undo the last edit");

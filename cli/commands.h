@@ -44,6 +44,7 @@ struct EditOptions {
   std::optional<std::filesystem::path> script;  ///< JSON Lines, done after them
   std::filesystem::path output;
   std::optional<std::filesystem::path> journal;
+  bool keep_on_cancel = false;  ///< every repair keeps what it has reached
 };
 int edit(const EditOptions& options, const Common& common, const Context& context);
 
@@ -104,6 +105,7 @@ struct SessionOptions {
   std::optional<std::filesystem::path> script;  ///< edit: JSON Lines, done after them
   std::optional<std::filesystem::path> output;  ///< save: the main file to write; absent: in place
   bool discard = false;                         ///< close: also with unsaved edits
+  bool keep_on_cancel = false;                  ///< edit: every repair keeps what it has reached
 };
 int session(const SessionOptions& options, const Common& common, const Context& context);
 

@@ -4,6 +4,7 @@
 #include <ostream>
 #include <system_error>
 
+#include "base/counted.h"
 #include "cli/commands.h"
 #include "cli/edit_list.h"
 #include "cli/json_output.h"
@@ -67,23 +68,35 @@ void refuse_edit(const Context& context, const Common& common, const WantedEdit&
 
 /// Prepares an edit with a progress bar; the user can cancel it.
 Result<document::Prepared> prepare_shown(const document::Document& document, const document::Edit& edit, const Context& context) {
-  MonotonicClock clock;
+  MonotonicClock of_machine;
+  Clock& clock = context.clock != nullptr ? *context.clock : of_machine;
   ProgressBar bar(context, std::string(name(edit)), clock);
   return document::prepare(document, edit, bar.progress(), &clock);
 }
 
-/// Applies the edits in order. False: one was refused; the reason was printed.
-bool apply_all(const std::vector<WantedEdit>& wanted, document::Document& document, JournalGuard& journal, const Common& common,
-               const Context& context) {
-  for (const WantedEdit& one : wanted) {
+enum class Applied : std::uint8_t { all, refused, stopped_and_kept };
+
+/// Says that the user stopped the command at an edit that is kept, with `left` edits after it.
+void say_kept(const Context& context, const WantedEdit& at, const document::EditReport& report, std::size_t left) {
+  std::string said = report.stopped ? "stopped in the middle of this edit" : "stopped after this edit";
+  said += "; what was reached is written";
+  if (left > 0) said += ", without the " + (left == 1 ? std::string("edit") : counted(left, "edit")) + " after it";
+  say(context, Error{at.file, at.line, std::move(said)});
+}
+
+/// Applies the edits in order, until one is refused or the user stops; the reason is printed.
+Applied apply_all(const std::vector<WantedEdit>& wanted, document::Document& document, JournalGuard& journal, const Common& common,
+                  const Context& context) {
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    const WantedEdit& one = wanted[i];
     Result<document::Prepared> prepared = prepare_shown(document, one.edit, context);
     if (!prepared) {
       refuse_edit(context, common, one, prepared.error());
-      return false;
+      return Applied::refused;
     }
     if (const Result<void> kept = journal.append(document, one.edit, *prepared); !kept) {
       refuse_edit(context, common, one, kept.error());
-      return false;
+      return Applied::refused;
     }
     const document::EditReport report = prepared->report;
     document::commit(document, std::move(*prepared));
@@ -91,12 +104,24 @@ bool apply_all(const std::vector<WantedEdit>& wanted, document::Document& docume
       context.out << edit_json(report) << '\n';
     else
       print_edit(context.out, report);
+    if (context.stop() && is_kept_on_cancel(one.edit)) {
+      say_kept(context, one, report, wanted.size() - i - 1);
+      return Applied::stopped_and_kept;
+    }
     if (context.stop()) {
       say(context, Error{one.file, one.line, "cancelled after this edit; nothing is written"});
-      return false;
+      return Applied::refused;
     }
   }
-  return true;
+  return Applied::all;
+}
+
+/// Saves even after the user has stopped the command at an edit that is kept.
+Result<mesh::deck::SaveReport> save_applied(const document::Document& document, const std::filesystem::path& output, Applied applied,
+                                            const Context& context) {
+  Context saving = context;
+  if (applied == Applied::stopped_and_kept) saving.interrupted = nullptr;
+  return save_deck(document, output, saving);
 }
 
 }  // namespace
@@ -111,6 +136,7 @@ int edit(const EditOptions& options, const Common& common, const Context& contex
     say(context, refusal->error);
     return refusal->status;
   }
+  if (options.keep_on_cancel) keep_on_cancel(wanted);
   const auto refuse = [&](const Error& error) {
     say(context, error);
     return kFailed;
@@ -122,13 +148,13 @@ int edit(const EditOptions& options, const Common& common, const Context& contex
   JournalGuard journal;
   if (options.journal)
     if (const Result<void> created = journal.create(*options.journal, *document); !created) return refuse(created.error());
-  if (!apply_all(wanted, *document, journal, common, context)) return kFailed;
-  if (!output_is_good(context)) return kFailed;
-  const Result<mesh::deck::SaveReport> saved = save_deck(*document, options.output, context);
+  const Applied applied = apply_all(wanted, *document, journal, common, context);
+  if (applied == Applied::refused || !output_is_good(context)) return kFailed;
+  const Result<mesh::deck::SaveReport> saved = save_applied(*document, options.output, applied, context);
   if (!saved) return refuse(saved.error());
   journal.keep();
   for (const std::string& note : saved->notes) say(context, Error{options.output.string(), 0, "note: " + note});
-  return kDone;
+  return applied == Applied::all ? kDone : kFailed;
 }
 
 }  // namespace prismesh::cli

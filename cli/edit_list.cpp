@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <string_view>
+#include <variant>
 
 #include "base/file.h"
 #include "mesh/document/edit_json.h"
@@ -36,6 +37,16 @@ std::optional<Refusal> read_edits(const std::vector<std::string>& edits, const s
     if (auto refusal = take(edit, script->string(), line, wanted)) return refusal;
   }
   return std::nullopt;
+}
+
+bool is_kept_on_cancel(const mesh::document::Edit& edit) {
+  const auto* repair = std::get_if<mesh::document::Repair>(&edit);
+  return repair != nullptr && repair->on_cancel == mesh::document::OnCancel::keep;
+}
+
+void keep_on_cancel(std::vector<WantedEdit>& wanted) {
+  for (WantedEdit& each : wanted)
+    if (auto* repair = std::get_if<mesh::document::Repair>(&each.edit)) repair->on_cancel = mesh::document::OnCancel::keep;
 }
 
 }  // namespace prismesh::cli

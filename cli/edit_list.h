@@ -1,4 +1,4 @@
-// Reads the edits that a user gives as arguments and as a script, before the first one is applied. Inner to cli.
+// The edits that a user gives as arguments and as a script: reads them before the first one is applied. Inner to cli.
 #pragma once
 
 #include <filesystem>
@@ -29,5 +29,10 @@ struct Refusal {
 /// Returns nothing if all were read.
 std::optional<Refusal> read_edits(const std::vector<std::string>& edits, const std::string& argument,
                                   const std::optional<std::filesystem::path>& script, std::vector<WantedEdit>& wanted);
+
+/// Whether the edit keeps what it has reached when it is cancelled.
+bool is_kept_on_cancel(const mesh::document::Edit& edit);
+/// Makes every repair among the edits keep what it has reached when it is cancelled.
+void keep_on_cancel(std::vector<WantedEdit>& wanted);
 
 }  // namespace prismesh::cli

@@ -26,6 +26,11 @@ Json counts_of_elements(const deck::ElementCounts& counts) {
 
 Json bad_shells(const quality::Counts& counts) { return {{"warn", counts.warn}, {"fail", counts.fail}}; }
 
+Json stopped_object(const document::StoppedRepair& stopped) {
+  return {{"attempt", stopped.attempt},       {"step", stopped.step},        {"round", stopped.round}, {"max_rounds", stopped.max_rounds},
+          {"bad_before", stopped.bad_before}, {"bad_left", stopped.bad_left}};
+}
+
 Json edit_object(const document::EditReport& report) {
   Json notes = Json::array();
   for (const std::string& note : report.notes) notes.push_back(printable(note));
@@ -45,6 +50,7 @@ Json edit_object(const document::EditReport& report) {
   object["lost"] = Json::array();
   for (const std::string& lost : report.lost) object["lost"].push_back(printable(lost));
   object["lost_connections"] = report.lost_connections;
+  if (report.stopped) object["stopped"] = stopped_object(*report.stopped);
   if (report.mass_before) object["mass_before"] = *report.mass_before;
   if (report.mass_after) object["mass_after"] = *report.mass_after;
   if (report.centre_before) object["cog_before"] = *report.centre_before;

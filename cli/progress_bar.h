@@ -1,4 +1,4 @@
-// Shows a progress bar on the terminal during long work.
+// Shows the progress of long work: a bar on a terminal, else lines for work that says what it is doing.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,8 @@
 
 namespace prismesh::cli {
 
-/// Draws on `context.err` if that is a terminal: after 0.3 s of work, and at most ten times a second. The destructor erases the bar.
+/// Writes to `context.err`. If that is a terminal, it draws a bar there after 0.3 s of work, and at most ten times a second; the destructor
+/// erases it. If not, work that has words gets a line after 2 s, and then one every 5 s; other work is silent.
 class ProgressBar {
  public:
   ProgressBar(const Context& context, std::string what, Clock& clock);
@@ -22,11 +23,15 @@ class ProgressBar {
   Progress progress();
 
  private:
-  void draw(double fraction);
+  void draw(double fraction, const Doing& doing);
+  void write_line(const Doing& doing);
+  /// The words and the seconds since the beginning.
+  std::string said(const Doing& doing) const;
 
   const Context& context_;
   std::string what_;
   Clock& clock_;
+  std::int64_t begun_ns_;
   std::int64_t next_draw_ns_;
   bool drawn_ = false;
 };

@@ -61,7 +61,9 @@ class Session {
       while (auto reply = (*client)->next_reply())
         if (reply->request == *number) return unfailed(std::move(reply->answer));
       while (const auto event = (*client)->next_event())
-        if (const auto* made = std::get_if<ipc::ProgressMade>(&*event); made != nullptr) progress(made->fraction);
+        if (const auto* made = std::get_if<ipc::ProgressMade>(&*event); made != nullptr)
+          progress(
+              made->fraction, made->doing.empty() ? Doing() : [made] { return made->doing; });
       if (context_.stop()) {
         if (!stopped_ns) {
           stopped_ns = clock.now_ns();
@@ -182,6 +184,10 @@ int edit_all(Session& session, const std::vector<WantedEdit>& wanted, const Comm
       context.out << edit_json(*report) << '\n';
     else
       print_edit(context.out, *report);
+    if (context.stop() && report->stopped) {
+      say(context, Error{one.file, one.line, "stopped in the middle of this edit; what was reached is kept"});
+      return kFailed;
+    }
   }
   return kDone;
 }
@@ -196,6 +202,7 @@ int session(const SessionOptions& options, const Common& common, const Context& 
     say(context, refusal->error);
     return refusal->status;
   }
+  if (options.keep_on_cancel) keep_on_cancel(wanted);
   Session session(options, context);
   Result<ipc::Answer> answer = ipc::Done{};
   switch (options.action) {

@@ -99,8 +99,11 @@ struct Camera {
 struct ShareCamera {  ///< no answer; the other clients receive CameraMoved
   Camera camera;
 };
-/// Stops the work under way, if this client asked for it and it can be stopped. Its answer is Failed, and nothing has changed.
-struct Cancel {};
+/// Stops the work under way, if this client asked for it and it can be stopped. Its answer is Failed, and nothing has changed; but a repair
+/// that is kept is answered as Edited. The first one decides.
+struct Cancel {
+  bool keep = false;  ///< keeps what a repair has reached; false: its `on_cancel` decides
+};
 struct GetState {};
 struct GetSnapshot {
   std::optional<std::uint64_t> generation;   ///< one of DocumentState::generations; absent: the current one
@@ -281,6 +284,8 @@ struct DocumentClosed {};
 struct ProgressMade {
   std::string what;
   double fraction = 0;
+  std::string doing;          ///< in words; empty: the work has none
+  std::uint64_t seconds = 0;  ///< since the work began
 };
 struct DragEnded {
   std::uint64_t drag = 0;

@@ -19,7 +19,7 @@ PRISMESH_MESSAGE(ipc::DragStep, "drag_step", f("drag", m.drag), f("sequence", m.
                  f("degrees", m.degrees));
 PRISMESH_MESSAGE(ipc::CommitDrag, "commit_drag", f("drag", m.drag));
 PRISMESH_MESSAGE(ipc::CancelDrag, "cancel_drag", f("drag", m.drag));
-PRISMESH_MESSAGE(ipc::Cancel, "cancel", );
+PRISMESH_MESSAGE(ipc::Cancel, "cancel", f("keep", m.keep));
 PRISMESH_MESSAGE(ipc::Count, "count", f("expr", m.expr), f("kind", m.kind));
 PRISMESH_MESSAGE(ipc::GetQuality, "get_quality", f("metric", m.metric), f("damaged", m.damaged));
 PRISMESH_MESSAGE(ipc::FindShells, "find_shells", f("metric", m.metric), f("from", m.from), f("to", m.to), f("damaged", m.damaged));
@@ -77,15 +77,18 @@ PRISMESH_MESSAGE(ipc::GenerationPublished, "generation_published", f("generation
                  f("history_bytes", m.history_bytes), f("history_cap", m.history_cap));
 PRISMESH_MESSAGE(ipc::DocumentOpened, "document_opened", f("path", m.path));
 PRISMESH_MESSAGE(ipc::DocumentClosed, "document_closed", );
-PRISMESH_MESSAGE(ipc::ProgressMade, "progress_made", f("what", m.what), f("fraction", m.fraction));
+PRISMESH_MESSAGE(ipc::ProgressMade, "progress_made", f("what", m.what), f("fraction", m.fraction), f("doing", m.doing),
+                 f("seconds", m.seconds));
 PRISMESH_MESSAGE(ipc::DragEnded, "drag_ended", f("drag", m.drag), f("committed", m.committed), f("why", m.why));
 PRISMESH_JSON_OBJECT(mesh::quality::Counts, f("ok", m.ok), f("warn", m.warn), f("fail", m.fail));
 PRISMESH_JSON_OBJECT(mesh::deck::Warning, f("file", m.file), f("line", m.line), f("kind", m.kind), f("message", m.message),
                      f("count", m.count));
+PRISMESH_JSON_OBJECT(mesh::document::StoppedRepair, f("attempt", m.attempt), f("step", m.step), f("round", m.round),
+                     f("max_rounds", m.max_rounds), f("bad_before", m.bad_before), f("bad_left", m.bad_left));
 PRISMESH_JSON_OBJECT(mesh::document::EditReport, f("edit", m.edit), f("nodes_moved", m.nodes_moved), f("elements_added", m.elements_added),
                      f("elements_removed", m.elements_removed), f("before", m.before), f("after", m.after),
                      f("clusters_before", m.clusters_before), f("clusters_after", m.clusters_after), f("triangle_pairs", m.triangle_pairs),
-                     f("inverted", m.inverted), f("lost_connections", m.lost_connections), f("lost", m.lost),
+                     f("stopped", m.stopped), f("inverted", m.inverted), f("lost_connections", m.lost_connections), f("lost", m.lost),
                      f("mass_before", m.mass_before), f("mass_after", m.mass_after), f("cog_before", m.centre_before),
                      f("cog_after", m.centre_after), f("notes", m.notes), f("ms", m.milliseconds));
 

@@ -80,7 +80,7 @@ void RequestScheduler::request(ipc::ClientId client, std::uint64_t number, ipc::
   if (const auto* returned = std::get_if<ipc::ReturnSnapshot>(&request)) return give_back(client, returned->lease);
   if (const auto* snapshot = std::get_if<ipc::GetSnapshot>(&request)) return give_snapshot(client, number, *snapshot);
   if (const auto* camera = std::get_if<ipc::ShareCamera>(&request)) return share_camera(client, *camera);
-  if (std::holds_alternative<ipc::Cancel>(request)) return cancel(client, number);
+  if (const auto* cancelled = std::get_if<ipc::Cancel>(&request)) return cancel(client, number, *cancelled);
   if (std::holds_alternative<ipc::GetState>(request)) return channel_.answer(client, number, state(), {});
   line_up(client, number, std::move(request), bytes);
 }
@@ -165,8 +165,9 @@ void RequestScheduler::give_back(ipc::ClientId client, std::uint64_t lease) {
   if (clients_[client].leases.erase(lease) > 0) publisher_.release(lease);
 }
 
-void RequestScheduler::cancel(ipc::ClientId client, std::uint64_t number) {
+void RequestScheduler::cancel(ipc::ClientId client, std::uint64_t number, const ipc::Cancel& cancel) {
   if (!long_ || long_->asker != client) return refuse(client, number, "nothing of yours is under way that can be stopped");
+  if (!cancelled_) keeps_ = cancel.keep;
   cancelled_ = true;
   channel_.answer(client, number, ipc::Done{}, {});
 }
@@ -269,6 +270,7 @@ void RequestScheduler::run_long(const Waiting& next, std::string what, OnDeath o
                                 const std::function<Outcome(const Progress&)>& work) {
   long_ = Long{next.client, on_death};
   cancelled_ = false;
+  keeps_ = false;
   run([work, progress = watch(std::move(what))] { return work(progress); },
       [this, client = next.client, number = next.number](Outcome& outcome) {
         long_.reset();
@@ -300,7 +302,7 @@ void RequestScheduler::run(std::function<Outcome()> work, std::function<void(Out
     progress_ = 0;
     then(*outcome);
     // Whatever the outcome, clients that were told of progress are told that the work is over.
-    if (!reported_.empty()) channel_.tell_all(ipc::ProgressMade{std::exchange(reported_, {}), 1});
+    if (!reported_.empty()) channel_.tell_all(ipc::ProgressMade{std::exchange(reported_, {}), 1, {}, 0});
     pump();
   };
   worker_.run([this, work = std::move(work), outcome, over = std::move(over)] {
@@ -324,19 +326,22 @@ void RequestScheduler::tell(Outcome& outcome) {
 }
 
 Progress RequestScheduler::watch(std::string what) {
-  return [this, what = std::move(what), last_ns = std::int64_t{0}](double fraction) mutable {
+  const std::int64_t began_ns = MonotonicClock().now_ns();  // `run` begins the work at once
+  const auto listener = [this, what = std::move(what), began_ns, last_ns = std::int64_t{0}](double fraction, const Doing& doing) mutable {
     worker_.show_progress();
     MonotonicClock clock;
     if (const std::int64_t now_ns = clock.now_ns(); now_ns - last_ns > kProgressPeriodNs) {
       last_ns = now_ns;
-      channel_.post([this, what, fraction] {
-        progress_ = fraction;
-        reported_ = what;
-        channel_.tell_all(ipc::ProgressMade{what, fraction});
+      const auto seconds = static_cast<std::uint64_t>((now_ns - began_ns) / 1'000'000'000);
+      channel_.post([this, made = ipc::ProgressMade{what, fraction, doing ? doing() : std::string(), seconds}] {
+        progress_ = made.fraction;
+        reported_ = made.what;
+        channel_.tell_all(made);
       });
     }
     return !worker_.stopping() && !cancelled_;
   };
+  return {listener, [this] { return keeps_.load(); }};
 }
 
 }  // namespace prismesh::modeld

@@ -79,7 +79,7 @@ class RequestScheduler {
   void give_snapshot(ipc::ClientId client, std::uint64_t number, const ipc::GetSnapshot& request);
   void share_camera(ipc::ClientId client, const ipc::ShareCamera& shared);
   void give_back(ipc::ClientId client, std::uint64_t lease);
-  void cancel(ipc::ClientId client, std::uint64_t number);
+  void cancel(ipc::ClientId client, std::uint64_t number, const ipc::Cancel& cancel);
   ipc::DocumentState state() const;
 
   /// Starts the next piece of work if none is under way.
@@ -113,6 +113,7 @@ class RequestScheduler {
     OnDeath on_death = OnDeath::stops;
   };
   std::optional<Long> long_;             ///< the work under way, if the asking client may cancel it
+  std::atomic<bool> keeps_ = false;      ///< whoever stops the work wants what it has reached; set before `cancelled_`
   std::atomic<bool> cancelled_ = false;  ///< asks the worker to stop the work under way
 };
 

@@ -53,6 +53,7 @@ void note_triangle_pairs(const repair::Repaired& repaired, EditReport& report) {
 void note_unrepaired(const repair::Repaired& repaired, const Frozen& frozen, const Model& model, EditReport& report) {
   if (repaired.unrepaired.empty()) return;
   report.notes.push_back(counted(repaired.unrepaired.size(), "element") + " still " + (repaired.unrepaired.size() == 1 ? "fails" : "fail"));
+  if (repaired.stopped) return;  // most of them weren't tried, so there are no reasons
   for (std::size_t i = 0; i < std::min(repaired.unrepaired.size(), kMaxNamedInRepair); ++i) {
     const repair::Unrepaired& left = repaired.unrepaired[i];
     const auto known = frozen.shells.find(left.shell);
@@ -65,14 +66,34 @@ void note_clusters_left(const repair::Repaired& repaired, const Model& model, Ed
   const std::vector<repair::ClusterLeft>& left = repaired.clusters_left;
   if (left.empty()) return;
   report.notes.push_back(crowded(left.size()) + (left.size() == 1 ? " stays" : " stay"));
+  if (repaired.stopped) return;
   for (std::size_t i = 0; i < std::min(left.size(), kMaxNamedInRepair); ++i)
     report.notes.push_back((left[i].node.valid() ? "node:" + std::to_string(model.node_ids[left[i].node.value]) : "a new node") + ": " +
                            std::to_string(left[i].triangles) + " triangles; " + left[i].why);
 }
 
+void note_stop(int attempt, int max_rounds, const repair::Repaired& repaired, EditReport& report) {
+  const StoppedRepair stopped{attempt,    repaired.stopped->step, repaired.rounds,
+                              max_rounds, repaired.bad_before,    repaired.stopped->bad_left};
+  const std::string of_attempt = attempt > 1 ? " of attempt " + std::to_string(attempt) : "";
+  const std::string left =
+      stopped.bad_before > 0 ? ", with " + std::to_string(stopped.bad_left) + " of " + counted(stopped.bad_before, "bad element") + " left"
+                             : "";
+  report.notes.push_back("stopped " + (stopped.round > 0 ? "in round " + std::to_string(stopped.round) : "before round 1") + of_attempt +
+                         ", of at most " + std::to_string(max_rounds) + " rounds; kept" + left);
+  report.stopped = stopped;
+}
+
+/// The words of a further attempt.
+Doing further(int attempt, const Doing& doing) {
+  if (attempt == 1 || !doing) return doing;
+  return [attempt, &doing] { return "attempt " + std::to_string(attempt) + ", " + doing(); };
+}
+
 /// What a repair works on and fills in.
 struct RepairTask {
   const Document& document;
+  const Repair& edit;
   repair::Options options;
   Generation& next;
   EditReport& report;
@@ -80,27 +101,47 @@ struct RepairTask {
   Frozen frozen;     ///< shells that must stay as they are, since the deck can't be written otherwise
 };
 
-/// Repairs the scope, and repeats without the changes that can't be written. Errors: cancelled; no set of changes can be written.
+/// The error of a repair that was stopped while the deck couldn't hold what it had reached.
+Error stopped_too_early(Error why) {
+  why.message = "the repair was stopped, and nothing of it is kept: the deck can't hold what it had reached: " + why.message;
+  return why;
+}
+
+/// Repairs the scope, and repeats without the changes that can't be written. Errors: cancelled; no set of changes can be written; stopped
+/// before one was found.
 Result<repair::Repaired> repair_writable(RepairTask& task, const ShellSet& scope, const Progress& progress) {
-  auto& [document, options, next, report, clusters, frozen] = task;
+  auto& [document, edit, options, next, report, clusters, frozen] = task;
   const Generation& current = document.current();
   const relax::ReferenceSurface surface = surface_about(current, scope, options.relax.feature_angle);
   const repair::Rules rules = with_frozen(rules_for(document, current), frozen);
+  int attempt = 1;
+  bool is_told_to_stop = false;
   double furthest = 0;  // the progress doesn't go back when another attempt begins
-  const Progress forward = [&](double fraction) { return !progress || progress(furthest = std::max(furthest, fraction)); };
-  for (int attempt = 1;; ++attempt) {
+  const Progress forward = [&](double fraction, const Doing& doing) {
+    furthest = std::max(furthest, fraction);
+    if (progress && !progress(furthest, further(attempt, doing))) is_told_to_stop = true;
+    return !is_told_to_stop;
+  };
+  const auto keeps = [&] { return task.edit.on_cancel == OnCancel::keep || progress.keeps(); };
+  for (;; ++attempt) {
+    options.stop_at.reset();
+    if (edit.stop_at && edit.stop_at->attempt == attempt) options.stop_at = edit.stop_at->step;
     Result<repair::Repaired> repaired =
         repair::repair({current.model, surface, rules, judged_by(document), options, clusters}, scope, forward);
-    if (!repaired || repaired->change.empty()) return repaired;
+    if (!repaired) return repaired;
+    if (is_told_to_stop && !keeps()) return fail(cancelled());
+    if (repaired->stopped) note_stop(attempt, options.max_rounds, *repaired, report);
+    if (repaired->change.empty()) return repaired;
     Generation trial = current;
     const Result<void> done = restructure(document, repaired->change, trial, report);
     if (done) {
       next = std::move(trial);
       return repaired;
     }
+    if (repaired->stopped) return fail(stopped_too_early(done.error()));
     if (attempt == kMaxAttempts) return fail(done.error());
     const Result<std::size_t> found = find_unwritable(document, current.model, repaired->change, frozen, forward);
-    if (!found) return fail(found.error());
+    if (!found) return fail(keeps() ? stopped_too_early(done.error()) : found.error());
     if (*found == 0) return fail(done.error());
   }
 }
@@ -117,7 +158,7 @@ Result<void> apply_edit(const Document& document, const Repair& edit, Generation
                                                         : "nothing to repair: every element in the scope is fine");
     return {};
   }
-  RepairTask task{document, options_of(edit.angle, edit.max_move), next, report, clusters.nodes, {}};
+  RepairTask task{document, edit, options_of(edit.angle, edit.max_move), next, report, clusters.nodes, {}};
   ShellSet shells;
   std::set_union(scope->begin(), scope->end(), clusters.shells.begin(), clusters.shells.end(), std::back_inserter(shells));
   const Result<repair::Repaired> repaired = repair_writable(task, shells, progress);

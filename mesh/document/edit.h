@@ -149,11 +149,20 @@ struct Relax {
   double angle = 30;  ///< degrees; sharper edges are features
   MoveLimits max_move;
 };
+/// What becomes of what an edit has reached when it is cancelled.
+enum class OnCancel : std::uint8_t { discard, keep };
+/// Where a repair was stopped and kept. Replayed with it, the repair ends there again.
+struct StopPoint {
+  int attempt = 1;         ///< to find changes that can be written
+  std::uint64_t step = 1;  ///< of this attempt: repair::StoppedAt
+};
 /// Changes the structure locally until the bad shells are valid or nothing improves.
 struct Repair {
   Scope scope = Scope::damaged;
   double angle = 30;
   MoveLimits max_move;
+  OnCancel on_cancel = OnCancel::discard;  ///< of a cancel that doesn't say itself that it keeps
+  std::optional<StopPoint> stop_at;        ///< the journal writes it
 };
 /// One operation, chosen by the user, on shells ("shell:12") or the edge between two nodes ("node:7").
 struct Restructure {

@@ -28,6 +28,7 @@ PRISMESH_JSON_NAMES(mesh::document::Scope, {{"selection", mesh::document::Scope:
                                             {"all", mesh::document::Scope::all},
                                             {"damaged", mesh::document::Scope::damaged},
                                             {"failed", mesh::document::Scope::failed}});
+PRISMESH_JSON_NAMES(mesh::document::OnCancel, {{"discard", mesh::document::OnCancel::discard}, {"keep", mesh::document::OnCancel::keep}});
 PRISMESH_JSON_NAMES(mesh::document::RelaxMode, {{"full", mesh::document::RelaxMode::full}, {"from", mesh::document::RelaxMode::from}});
 PRISMESH_JSON_NAMES(mesh::quality::SizeFrom, {{name(mesh::quality::SizeFrom::part), mesh::quality::SizeFrom::part},
                                               {name(mesh::quality::SizeFrom::deck), mesh::quality::SizeFrom::deck},
@@ -84,6 +85,8 @@ inline constexpr NumberLimits kNotNegative{0, kMaxNumber};
 inline constexpr NumberLimits kEdgeAngles{0, 180};
 inline constexpr NumberLimits kTurns{-36000, 36000};  ///< degrees: a hundred turns either way
 inline constexpr WholeNumberLimits kRings{1, 1'000'000};
+inline constexpr WholeNumberLimits kAttempts{1, 5};  ///< of a repair
+inline constexpr WholeNumberLimits kSteps{1, 1'000'000'000'000};
 inline constexpr ListLimits kOutline{3, 100'000, "points [x, y]", "point"};
 inline constexpr ListLimits kEntities{1, 1000, "entities like [\"shell:12\", \"shell:40\"]", ""};
 inline constexpr TwoWords kNormals{"grab", "each", "\"grab\" (all nodes along the normal at the grab) or \"each\""};
@@ -114,6 +117,14 @@ struct Definition<mesh::document::MoveLimits> {
     f("line", m.line, kNotNegative);
   }
 };
+template <>
+struct Definition<mesh::document::StopPoint> {
+  static constexpr std::string_view kExample = R"({"attempt": 1, "step": 532})";
+  static void fields(auto& m, auto& f) {
+    f.required("attempt", m.attempt, kAttempts);
+    f.required("step", m.step, kSteps);
+  }
+};
 PRISMESH_JSON_OBJECT(mesh::document::Shaping, f("on", m.on), f("grab", m.grab), f("grab_at", m.grab_at), f("falloff", m.weights.falloff),
                      f("free_ends", m.weights.free_ends), f("origin", m.weights.origin), f("origin_at", m.origin_at),
                      f("across_welds", m.weights.across_welds), f("symmetry", m.symmetry), f("max_move", m.max_move, kPositive));
@@ -139,7 +150,8 @@ PRISMESH_JSON_OBJECT(mesh::document::Rotate, f.required("point", m.point), f.req
                      f.required("degrees", m.degrees, kTurns), Definition<mesh::document::Shaping>::fields(m.shaping, f));
 PRISMESH_JSON_OBJECT(mesh::document::Relax, f("mode", m.mode), f("at", m.at), f("threshold", m.threshold, kPositive), f("scope", m.scope),
                      f("angle", m.angle, kEdgeAngles), f("max_move", m.max_move));
-PRISMESH_JSON_OBJECT(mesh::document::Repair, f("scope", m.scope), f("angle", m.angle, kEdgeAngles), f("max_move", m.max_move));
+PRISMESH_JSON_OBJECT(mesh::document::Repair, f("scope", m.scope), f("angle", m.angle, kEdgeAngles), f("max_move", m.max_move),
+                     f("on_cancel", m.on_cancel), f("stop_at", m.stop_at));
 PRISMESH_JSON_OBJECT(mesh::document::Restructure, f.required("at", m.at, kEntities));
 PRISMESH_JSON_OBJECT(mesh::document::Undo, );
 PRISMESH_JSON_OBJECT(mesh::document::Redo, );

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +11,16 @@
 #include "mesh/quality/report.h"
 
 namespace prismesh::mesh::document {
+
+/// A repair that ended before it was finished: a cancel kept what it had reached, or the edit says where to stop.
+struct StoppedRepair {
+  int attempt = 1;         ///< to find changes that can be written
+  std::uint64_t step = 0;  ///< of this attempt: repair::StoppedAt
+  int round = 0;           ///< of this attempt, from 1; 0: before the first
+  int max_rounds = 0;
+  std::size_t bad_before = 0;  ///< elements of the scope that failed or warned
+  std::size_t bad_left = 0;
+};
 
 struct EditReport {
   std::string edit;
@@ -21,6 +32,7 @@ struct EditReport {
   std::size_t clusters_before = 0;  ///< nodes with too many triangles about them (docs/quality/structure.md)
   std::size_t clusters_after = 0;
   std::size_t triangle_pairs = 0;  ///< of `repair`: edges between two triangles that it made and that stay (docs/repairing.md)
+  std::optional<StoppedRepair> stopped;
   // of edits that move nodes:
   std::size_t inverted = 0;           ///< shells that it turned over or folded (docs/shaping.md)
   std::size_t lost_connections = 0;   ///< nodes that lay on a sheet and no longer do (docs/connections.md)

@@ -250,7 +250,7 @@ Result<void> Journal::append(const Document& document, const Edit& edit, const P
         "edits (prismesh session close --discard)");
   const bool push = prepared.step == Prepared::Step::push;
   const std::string delta = push ? base64_encode(encode_delta(document.current(), *prepared.next)) : "";
-  const std::string intent = intent_text(edit);
+  const std::string intent = intent_text(prepared.as_done ? *prepared.as_done : edit);
   const std::string text = record_text({impl_->records + 1, intent, prepared.step, prepared.drop_oldest, delta}, impl_->check);
   if (const Result<void> appended = impl_->file.append(text); !appended) return appended;
   ++impl_->records;

@@ -47,9 +47,9 @@ class Journal {
   Journal& operator=(Journal&&) noexcept;
   ~Journal();
 
-  /// Writes intent and delta of a prepared edit and flushes them to disk. After an error the edit must not be committed, and the journal is
-  /// as before. If it can't be restored (the disk failed to flush, and has no room for a new file), this and every later append fails with
-  /// the reason.
+  /// Writes intent (`prepared.as_done`, else `edit`) and delta of a prepared edit and flushes them to disk. After an error the edit must
+  /// not be committed, and the journal is as before. If it can't be restored (the disk failed to flush, and has no room for a new file),
+  /// this and every later append fails with the reason.
   Result<void> append(const Document& document, const Edit& edit, const Prepared& prepared);
 
   const std::filesystem::path& path() const;

@@ -43,6 +43,12 @@ Result<Prepared> prepare_push(const Document& document, const E& edit, std::stri
       return apply_edit(document, edit, *next, prepared.report);
   }();
   if (!applied) return fail(applied.error());
+  if constexpr (std::is_same_v<E, Repair>)
+    if (const std::optional<StoppedRepair>& stopped = prepared.report.stopped) {
+      Repair done = edit;
+      done.stop_at = StopPoint{stopped->attempt, stopped->step};
+      prepared.as_done = std::move(done);
+    }
   next->number = document.next_number;
   next->made_by = edit_name;
   next->own_bytes = own_bytes(current, *next);

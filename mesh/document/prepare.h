@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "base/clock.h"
 #include "base/error.h"
@@ -20,11 +21,12 @@ struct Prepared {
   enum class Step : std::uint8_t { push, undo, redo } step = Step::push;
   std::size_t drop_oldest = 0;  ///< generations to drop on commit, so that the history keeps its byte cap
   EditReport report;
+  std::optional<Edit> as_done;  ///< what to journal, if that isn't the edit: a repair that was stopped, with the place
 };
 
 /// Applies the edit to a copy of the current generation; the document doesn't change. Deterministic. `progress` is called by relax, repair
 /// and select, which may take long. `clock` may be null: the report's milliseconds stay 0. Errors: expression:column, nothing selected, a
-/// locked or held node would move (named), nothing to undo, cancelled.
+/// locked or held node would move (named), nothing to undo, cancelled. A cancelled repair may be kept (docs/repairing.md).
 Result<Prepared> prepare(const Document& document, const Edit& edit, const Progress& progress = {}, Clock* clock = nullptr);
 /// Makes it the current generation. Drops what could be redone and, over the byte cap, the oldest generations. Can't fail.
 void commit(Document& document, Prepared prepared);

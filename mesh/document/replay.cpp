@@ -114,8 +114,8 @@ std::vector<ReplayStep> replay(Document& document, const JournalIntents& intents
       intended.push(false, use);
       continue;
     }
-    const auto within = [&](double fraction) {
-      return progress((static_cast<double>(i) + fraction) / static_cast<double>(intents.edits.size()));
+    const auto within = [&](double fraction, const Doing& doing) {
+      return progress((static_cast<double>(i) + fraction) / static_cast<double>(intents.edits.size()), doing);
     };
     Result<EditReport> report = apply(document, edit, progress ? Progress(within) : Progress(), clock);
     if (!report && is_cancelled(report.error())) break;

@@ -187,7 +187,8 @@ class Search {
   /// Why these units can't be written; nothing: they can, or the search is over.
   std::optional<std::string> refusal(Units units, const PartOf& part_of_units) {
     if (units.empty() || stopped_ || ++trials_ > kMaxTrials) return std::nullopt;
-    stopped_ = progress_ && !progress_(static_cast<double>(trials_ - 1) / kMaxTrials);
+    const auto words = [] { return std::string("finding what the deck can't hold"); };
+    stopped_ = progress_ && !progress_(static_cast<double>(trials_ - 1) / kMaxTrials, words);
     if (stopped_) return std::nullopt;
     Model trial = model_;
     const Result<void> possible = carry_out(document_, part_of_units(units), trial);

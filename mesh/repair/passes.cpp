@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <string>
 #include <utility>
 
 #include "mesh/relax/relax.h"
@@ -20,12 +21,28 @@ namespace {
 
 constexpr int kMaxStripPasses = 4;
 
+std::string words_of(const RoundProgress& progress) {
+  std::string words = "round " + std::to_string(progress.round + 1);
+  if (progress.bad_before > 0)
+    words += ", " + std::to_string(progress.bad_left()) + " of " + std::to_string(progress.bad_before) + " bad elements left";
+  return words;
+}
+
 /// Reports the share of the round that is done; false: the repair was cancelled. The number of rounds isn't known before: each counts as
 /// 40 % of what is left.
-bool goes_on(RoundProgress& progress, double done) {
-  if (!progress.stopped && progress.progress && !progress.progress(1 - std::pow(0.6, progress.round + done)))
+bool reports(RoundProgress& progress, double done) {
+  if (!progress.stopped && progress.progress &&
+      !progress.progress(1 - std::pow(0.6, progress.round + done), [&] { return words_of(progress); }))
     progress.stopped = cancelled();
   return !progress.stopped;
+}
+
+/// Begins a step, and reports as above; false: the repair was cancelled, or stops here as asked. Counts the same steps each time.
+bool goes_on(RoundProgress& progress, double done) {
+  if (progress.stopped) return false;
+  ++progress.step;
+  if (progress.stop_at && progress.step >= *progress.stop_at) progress.stopped = cancelled();
+  return reports(progress, done);
 }
 
 /// One pass over the strips at bad shells.
@@ -146,7 +163,7 @@ void relax_neighbourhood(const RepairContext& context, RepairState& state) {
   options.move_origins = &at_first;
   const Result<relax::Relaxed> relaxed =
       relax::relax({small, context.surface, context.criteria, options}, movable_nodes(patch, state.history),
-                   [&](double) { return goes_on(state.progress, 0); });
+                   [&](double) { return reports(state.progress, 0); });
   if (!relaxed) {
     state.progress.stopped = relaxed.error();
     return;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string_view>
@@ -47,7 +48,11 @@ struct TrialRecord {
 /// Progress over the rounds, and why the repair stopped early.
 struct RoundProgress {
   const Progress& progress;
-  int round = 0;  ///< from 0
+  std::optional<std::uint64_t> stop_at = std::nullopt;  ///< Options::stop_at
+  std::function<std::size_t()> bad_left = {};           ///< counts the shells of the scope that fail or warn
+  std::size_t bad_before = 0;
+  int round = 0;           ///< from 0
+  std::uint64_t step = 0;  ///< begun so far; between two steps the patch is as valid as after a repair
   std::optional<Error> stopped = std::nullopt;
 };
 

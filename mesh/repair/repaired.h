@@ -3,6 +3,8 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +20,12 @@ struct Unrepaired {
   std::string why;   ///< "no operation makes it better", "every operation makes a neighbour fail", ...
 };
 
+/// Where a repair was stopped. The same repair with `Options::stop_at` at this step gives the same result, whatever the number of threads.
+struct StoppedAt {
+  std::uint64_t step = 0;    ///< from 1
+  std::size_t bad_left = 0;  ///< shells of the scope that fail or warn
+};
+
 struct Repaired {
   Restructuring change;
   std::array<std::size_t, kOperationCount> done{};  ///< accepted operations, by Operation
@@ -27,7 +35,8 @@ struct Repaired {
   std::vector<ClusterLeft> clusters_left;           ///< those that are left, and those that the repair made
   std::vector<Unrepaired> unrepaired;               ///< still failing, ascending by shell
   std::size_t triangle_pairs = 0;                   ///< edges between two triangles that the repair had to make, so that shells pass
-  int rounds = 0;
+  int rounds = 0;                                   ///< begun
+  std::optional<StoppedAt> stopped;                 ///< before it was finished; `change` is what it had reached
 };
 
 }  // namespace prismesh::mesh::repair

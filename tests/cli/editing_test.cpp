@@ -213,6 +213,96 @@ TEST_F(Cli, stopped_work_leaves_nothing) {
   EXPECT_EQ(names(), before);
 }
 
+/// Goes on by 100 ms each time it is read; interrupts after `stop` readings.
+class SteppingClock final : public Clock {
+ public:
+  explicit SteppingClock(std::int64_t stop = -1) : stop_(stop) {}
+  std::int64_t now_ns() override {
+    if (++readings_ == stop_) interrupted = true;
+    return readings_ * 100'000'000;
+  }
+  std::atomic<bool> interrupted{false};
+
+ private:
+  std::int64_t readings_ = 0, stop_;
+};
+
+/// A sheet of 20 x 20 quads out of which every fifth node is pulled.
+std::string rough_text() {
+  constexpr int kSide = 21;
+  std::string text = "*KEYWORD\n*NODE\n";
+  for (int j = 0; j < kSide; ++j)
+    for (int i = 0; i < kSide; ++i) {
+      const bool pulled = i % 5 == 2 && j % 5 == 2;
+      text += node_card(1 + j * kSide + i, 5 * i + (pulled ? 2.5 : 0), 5 * j + (pulled ? 1.5 : 0), pulled ? 4 : 0);
+    }
+  text += "*ELEMENT_SHELL\n";
+  for (int j = 0; j + 1 < kSide; ++j)
+    for (int i = 0; i + 1 < kSide; ++i) {
+      const int a = 1 + j * kSide + i;
+      text += shell_card(1 + j * (kSide - 1) + i, 7, a, a + 1, a + kSide + 1, a + kSide);
+    }
+  return text + "*PART\nsheet\n         7         3         2\n*END\n";
+}
+
+constexpr auto kRepairAll = R"({"edit":"repair","scope":"all"})";
+
+TEST_F(Cli, a_repair_says_in_a_pipe_how_far_it_is) {
+  const std::string deck = write("rough.k", rough_text());
+  SteppingClock clock(120);
+  std::ostringstream out, err;
+  const std::vector<std::string> args = {"edit", deck, "--edit", kRepairAll, "-o", path("out.k"), "--json", "--keep-on-cancel"};
+  EXPECT_EQ(run(args, {out, err, false, &clock.interrupted, &clock}), kFailed);
+  std::vector<std::string> lines;
+  std::istringstream said(err.str());
+  for (std::string line; std::getline(said, line);)
+    if (line.starts_with("repair: ")) lines.push_back(line);
+  ASSERT_GE(lines.size(), 2u) << err.str();
+  EXPECT_THAT(lines[0], ::testing::MatchesRegex("repair: round [0-9]+, [0-9]+ of [0-9]+ bad elements left, 2 s"));
+  EXPECT_THAT(lines[1], ::testing::MatchesRegex("repair: round [0-9]+, [0-9]+ of [0-9]+ bad elements left, [78] s"));
+  EXPECT_EQ(nlohmann::json::parse(out.str())["ok"], true);
+}
+
+TEST_F(Cli, a_repair_that_is_stopped_is_written_where_that_is_asked_for) {
+  const std::string deck = write("rough.k", rough_text());
+  std::vector<std::vector<std::string>> ways = {{"--keep-on-cancel", "--edit", kRepairAll},
+                                                {"--edit", R"({"edit":"repair","scope":"all","on_cancel":"keep"})"}};
+  std::string kept;
+  for (std::vector<std::string>& way : ways) {
+    SteppingClock clock(60);
+    std::ostringstream out, err;
+    std::vector<std::string> args = {"edit", deck, "-o", path("out.k"), "--journal", path("kept.journal"), "--json"};
+    args.insert(args.end(), way.begin(), way.end());
+    args.insert(args.end(), {"--edit", R"({"edit":"hide","on":"7"})"});
+    EXPECT_EQ(run(args, {out, err, false, &clock.interrupted, &clock}), kFailed);
+    EXPECT_THAT(err.str(),
+                HasSubstr("--edit:1: stopped in the middle of this edit; what was reached is written, without the edit after it\n"));
+    const auto report = nlohmann::json::parse(out.str());
+    EXPECT_EQ(report["ok"], true);
+    EXPECT_GE(report["stopped"]["round"], 1);
+    EXPECT_EQ(report["stopped"]["max_rounds"], 20);
+    EXPECT_GT(report["stopped"]["bad_left"], 0);
+    EXPECT_GT(report["nodes_moved"], 0);
+    EXPECT_EQ(prismesh({"replay", path("kept.journal"), deck, "-o", path("replayed.k")}).status, kDone);
+    EXPECT_EQ(read(path("replayed.k")), read(path("out.k")));
+    if (kept.empty()) kept = read(path("out.k"));
+    EXPECT_EQ(read(path("out.k")), kept) << "the same both ways";
+    EXPECT_NE(kept, read(deck));
+    for (const char* each : {"out.k", "replayed.k", "kept.journal"}) std::filesystem::remove(path(each));
+  }
+}
+
+TEST_F(Cli, a_repair_that_is_stopped_is_discarded_otherwise) {
+  const std::string deck = write("rough.k", rough_text());
+  const auto before = names();
+  SteppingClock clock(60);
+  std::ostringstream out, err;
+  const std::vector<std::string> args = {"edit", deck, "--edit", kRepairAll, "-o", path("out.k"), "--journal", path("kept.journal")};
+  EXPECT_EQ(run(args, {out, err, false, &clock.interrupted, &clock}), kFailed);
+  EXPECT_THAT(err.str(), HasSubstr("--edit:1: cancelled\n"));
+  EXPECT_EQ(names(), before);
+}
+
 TEST_F(Cli, a_stopped_sample_leaves_nothing) {
   const std::atomic<bool> interrupted{true};
   std::ostringstream out, err;

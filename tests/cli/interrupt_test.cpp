@@ -136,6 +136,22 @@ TEST_F(Interrupt, ctrl_c_in_the_middle_of_a_repair_leaves_nothing) {
   for (const std::string& line : screen) EXPECT_EQ(line.find("repair ["), std::string::npos) << line;
 }
 
+TEST_F(Interrupt, ctrl_c_in_the_middle_of_a_repair_that_is_kept_writes_what_it_reached) {
+  const std::string deck = rough_sheet(60);
+  OnTerminal edit({program(), "edit", deck, "--edit", R"({"edit":"repair","scope":"all"})", "-o", path("out.k"), "--keep-on-cancel"});
+  ASSERT_TRUE(edit.shows("  round 1, ")) << "no words were shown before the repair was over:\n" << edit.shown();
+  edit.press('\x03');
+  EXPECT_EQ(edit.wait_for_exit(), kFailed);
+  ASSERT_TRUE(exists("out.k"));
+  EXPECT_EQ(prismesh({"check", path("out.k")}).status, kDone);
+  const std::vector<std::string> screen = screen_after(edit.shown());
+  EXPECT_THAT(screen, ::testing::Contains(::testing::HasSubstr("stopped in the middle of this edit; what was reached is written")));
+  for (const std::string& line : screen) {
+    EXPECT_EQ(line.find("repair ["), std::string::npos) << line;
+    EXPECT_EQ(line.find("saving"), std::string::npos) << line;
+  }
+}
+
 TEST_F(Interrupt, ctrl_c_in_the_middle_of_measuring_removes_the_temporary_folder) {
   std::filesystem::create_directories(folder / "tmp");
   OnTerminal bench({"/usr/bin/env", "TMPDIR=" + path("tmp"), program(), "bench", "--elements", "20000"});

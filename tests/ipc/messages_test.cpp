@@ -74,6 +74,30 @@ TEST(Messages, answers_and_events_survive_a_round_trip) {
   EXPECT_EQ(std::get<DragEnded>(std::get<Event>(event->message)).drag, 4u);
 }
 
+TEST(Messages, a_stopped_repair_survives_the_way) {
+  const auto cancel = decode_request(encode_request(3, Cancel{true}).value());
+  ASSERT_TRUE(cancel) << cancel.error().message;
+  EXPECT_TRUE(std::get<Cancel>(cancel->request).keep);
+  EXPECT_FALSE(std::get<Cancel>(decode_request(R"({"request": "cancel"})")->request).keep);
+  const Result<FromDaemon> event = decode_from_daemon(encode_event(ProgressMade{"repair", 0.5, "round 3", 25}));
+  ASSERT_TRUE(event) << event.error().text();
+  const auto& made = std::get<ProgressMade>(std::get<Event>(event->message));
+  EXPECT_EQ(made.doing, "round 3");
+  EXPECT_EQ(made.seconds, 25u);
+  Edited edited;
+  edited.report.stopped = mesh::document::StoppedRepair{2, 77, 3, 20, 1109, 41};
+  const Result<FromDaemon> answer = decode_from_daemon(encode_answer(1, edited, 0));
+  ASSERT_TRUE(answer) << answer.error().text();
+  const auto& stopped = std::get<Edited>(std::get<Answer>(answer->message)).report.stopped;
+  ASSERT_TRUE(stopped);
+  EXPECT_EQ(stopped->attempt, 2);
+  EXPECT_EQ(stopped->step, 77u);
+  EXPECT_EQ(stopped->round, 3);
+  EXPECT_EQ(stopped->max_rounds, 20);
+  EXPECT_EQ(stopped->bad_before, 1109u);
+  EXPECT_EQ(stopped->bad_left, 41u);
+}
+
 TEST(Messages, an_error_survives_the_way_as_an_answer) {
   const auto sent = [](const Error& error) {
     const Result<FromDaemon> message = decode_from_daemon(encode_answer(1, failed_from(error)));
@@ -92,6 +116,7 @@ TEST(Messages, errors_name_the_field_and_the_nearest_known_one) {
   EXPECT_EQ(refusal(R"({"request": "commit_drag", "drag": -1})"), "\"commit_drag\": field \"drag\" must not be negative");
   EXPECT_EQ(refusal(R"({"request": "commit_drag", "drag": 1.5})"), "\"commit_drag\": field \"drag\" must be a whole number");
   EXPECT_EQ(refusal(R"({"request": "drag_step", "by": [1, 2]})"), "\"drag_step\": field \"by\" must be a list of three numbers");
+  EXPECT_EQ(refusal(R"({"request": "cancel", "keep": "yes"})"), "\"cancel\": field \"keep\" must be true or false");
   EXPECT_EQ(refusal(R"({"request": "close", "discard": 1})"), "\"close\": field \"discard\" must be true or false");
   EXPECT_EQ(refusal(R"({"request": "hello", "protocol": 99999999999})"), "\"hello\": field \"protocol\" is too large");
   EXPECT_EQ(refusal(R"({"number": 1})"), "field \"request\" is missing");

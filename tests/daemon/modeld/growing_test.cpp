@@ -199,6 +199,24 @@ TEST_F(Growing, a_cancelled_edit_changes_nothing) {
   EXPECT_EQ(first.state().journalled_edits, journalled);
 }
 
+TEST_F(Growing, a_cancelled_repair_that_is_kept_comes_back_after_a_restart) {
+  const fs::path deck = folder_.sheet();
+  DocumentKeeper first = keeper();
+  open(first, deck);
+  edit(first, R"({"edit":"translate","by":[3,3,9],"on":"1313"})");
+  int calls = 0;
+  const Progress keeping{[&](double) { return ++calls < 30; }, [] { return true; }};
+  const Result<EditReport> kept = first.edit(parse_edit(R"({"edit":"repair","scope":"all"})").value(), keeping);
+  ASSERT_TRUE(kept) << kept.error().text();
+  ASSERT_TRUE(kept->stopped);
+  const Generation shown = first.document().current();
+  first = keeper();
+  open(first, deck);
+  expect_same(shown, first.document().current());
+  edit(first, R"({"edit":"undo"})");
+  EXPECT_TRUE(first.state().can_redo);
+}
+
 /// All files in a folder and below, with their content.
 std::map<std::string, std::string> everything_in(const fs::path& folder) {
   std::map<std::string, std::string> all;

@@ -57,6 +57,16 @@ class ManualLoop final : public ClientChannel {
     }
     return answers_[{client, number}];
   }
+  /// Runs posted work until clients are told of the progress of work that is under way.
+  ipc::ProgressMade wait_for_progress() {
+    for (events_.clear();;) {
+      for (const ipc::Event& event : events_)
+        if (const auto* made = std::get_if<ipc::ProgressMade>(&event); made != nullptr && made->fraction < 1) return *made;
+      await();
+      if (::testing::Test::HasFatalFailure()) return {};
+      run_one();
+    }
+  }
   std::vector<ipc::DragEnded> ended_drags() const {
     std::vector<ipc::DragEnded> ended;
     for (const ipc::Event& event : events_)
@@ -273,6 +283,29 @@ TEST_F(RequestSchedulerTest, only_the_requesting_client_can_cancel) {
   EXPECT_EQ(refusal(kOther, ipc::Cancel{}), "nothing of yours is under way that can be stopped");
   loop_.wait_for_answer(kOne, edit);
   EXPECT_EQ(refusal(kOne, ipc::Cancel{}), "nothing of yours is under way that can be stopped") << "it is done";
+}
+
+TEST_F(RequestSchedulerTest, a_repair_says_how_far_it_is_and_the_first_cancel_says_whether_it_is_kept) {
+  const std::string bend = R"({"edit":"translate","by":[3,3,9],"on":"1000-1400:37","falloff":{"profile":"constant"}})";
+  ask<ipc::Edited>(kOne, ipc::ApplyEdit{parse_edit(bend).value()});
+  for (const bool keep : {false, true}) {
+    Repair all;
+    all.scope = Scope::all;
+    const std::uint64_t repair = begin(kOne, ipc::ApplyEdit{all});
+    const ipc::ProgressMade made = loop_.wait_for_progress();
+    EXPECT_EQ(made.what, "repair");
+    EXPECT_EQ(made.doing.rfind("round 1, ", 0), 0u) << made.doing;
+    begin(kOne, ipc::Cancel{keep});
+    begin(kOne, ipc::Cancel{!keep});
+    const ipc::Answer& answer = loop_.wait_for_answer(kOne, repair).answer;
+    if (keep) {
+      ASSERT_TRUE(std::holds_alternative<ipc::Edited>(answer)) << std::get<ipc::Failed>(answer).message;
+      EXPECT_TRUE(std::get<ipc::Edited>(answer).report.stopped);
+    } else {
+      ASSERT_TRUE(std::holds_alternative<ipc::Failed>(answer));
+      EXPECT_EQ(std::get<ipc::Failed>(answer).message, "cancelled");
+    }
+  }
 }
 
 TEST_F(RequestSchedulerTest, waiting_requests_are_executed_in_order) {

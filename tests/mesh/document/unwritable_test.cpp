@@ -96,6 +96,29 @@ TEST(Unwritable, what_cannot_be_written_anywhere_is_left_and_nothing_is_done) {
   EXPECT_TRUE(saved) << saved.error().text();
 }
 
+TEST(Unwritable, a_repair_that_is_stopped_before_it_can_be_written_says_so_and_changes_nothing) {
+  const Folder folder;
+  Document document = open_half_odd(folder / "a.k");
+  must_apply(document, dent(sheet_node(3, 4)));
+  std::size_t calls = 0, refused = 0, kept = 0;
+  ASSERT_TRUE(prepare(document, edit_of(R"({"edit":"repair"})"), [&](double) { return ++calls > 0; }));
+  for (std::size_t stop = 0; stop < calls; stop += 1 + calls / 60) {
+    std::size_t asked = 0;
+    const Progress keeping{[&](double) { return asked++ < stop; }, [] { return true; }};
+    const Result<Prepared> prepared = prepare(document, edit_of(R"({"edit":"repair"})"), keeping);
+    if (prepared) {
+      ++kept;
+      continue;
+    }
+    ++refused;
+    EXPECT_THAT(prepared.error().text(),
+                HasSubstr("the repair was stopped, and nothing of it is kept: the deck can't hold what it had reached"));
+    EXPECT_FALSE(is_cancelled(prepared.error()));
+  }
+  EXPECT_GT(refused, 0u);
+  EXPECT_GT(kept, 0u) << "before anything was divided";
+}
+
 TEST(Unwritable, the_search_finds_each_place_has_a_progress_and_stops_when_told) {
   const Folder folder;
   Document document = open_half_odd(folder / "a.k");

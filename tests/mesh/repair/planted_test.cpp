@@ -309,17 +309,52 @@ TEST(Reasons, are_told_for_what_is_left) {
   EXPECT_EQ(reasons(warped.model(), {}, 0), std::set<std::string>{"there would be too many triangles"});
 }
 
-TEST(Cancelled, a_repair_says_so) {
-  const Grid grid = flat();
-  Mesh mesh{grid.positions(), grid.shells()};
-  plant_short_edge(mesh, grid, 5, 5);
-  plant_wrong_edge(mesh, grid, 8, 8);
-  const Model bad = mesh.model();
-  const relax::ReferenceSurface surface(bad, all_shells(bad), 30);
-  const auto repaired = repair({bad, surface, {}, {quality::default_criteria(), 1.0}, {}}, bad_shells(bad, quality::Grade::warn),
-                               [](double) { return false; });
-  ASSERT_FALSE(repaired.has_value());
-  EXPECT_EQ(repaired.error().message, cancelled().message);
+/// A flat sheet with three defects, repaired until it is stopped.
+struct Interrupted {
+  Grid grid = flat();
+  Model bad;
+  relax::ReferenceSurface surface;
+  Interrupted() : bad(planted(grid)), surface(bad, all_shells(bad), 30) {}
+  static Model planted(const Grid& grid) {
+    Mesh mesh{grid.positions(), grid.shells()};
+    plant_short_edge(mesh, grid, 2, 5);
+    plant_short_edge(mesh, grid, 5, 5);
+    plant_wrong_edge(mesh, grid, 8, 8);
+    return mesh.model();
+  }
+  Repaired repair_until(const Progress& progress, std::optional<std::uint64_t> stop_at = std::nullopt) const {
+    Options options;
+    options.stop_at = stop_at;
+    return repair({bad, surface, {}, {quality::default_criteria(), 1.0}, options}, bad_shells(bad, quality::Grade::warn), progress).value();
+  }
+};
+
+TEST(Stopped, a_repair_returns_what_it_has_reached_and_the_same_again_at_that_step) {
+  const Interrupted sheet;
+  std::size_t calls = 0;
+  const Repaired whole = sheet.repair_until([&](double) { return ++calls > 0; });
+  EXPECT_FALSE(whole.stopped);
+  ASSERT_GT(calls, 10u);
+  std::size_t changed = 0;
+  for (std::size_t stop = 0; stop < calls; stop += 1 + stop / 4) {
+    std::size_t asked = 0;
+    const Repaired stopped = sheet.repair_until([&](double) { return asked++ < stop; });
+    ASSERT_TRUE(stopped.stopped) << stop;
+    EXPECT_EQ(asked, stop + 1) << "asked no more";
+    const Model kept = carried_out(sheet.bad, stopped.change);
+    EXPECT_EQ(what_is_wrong(kept), "");
+    EXPECT_EQ(bad_shells(kept, quality::Grade::warn).size(), stopped.stopped->bad_left);
+    for (const ShellIndex shell : bad_shells(kept, quality::Grade::fail))
+      EXPECT_TRUE(shell.value >= sheet.bad.shell_count() || grade_of(sheet.bad, shell) == quality::Grade::fail) << shell.value;
+    const Repaired again = sheet.repair_until({}, stopped.stopped->step);
+    ASSERT_TRUE(again.stopped);
+    EXPECT_EQ(again.change.moved, stopped.change.moved);
+    EXPECT_EQ(again.change.reshaped, stopped.change.reshaped);
+    EXPECT_EQ(again.done, stopped.done);
+    EXPECT_EQ(again.stopped->bad_left, stopped.stopped->bad_left);
+    changed += stopped.change.empty() ? 0 : 1;
+  }
+  EXPECT_GT(changed, 3u);
 }
 
 }  // namespace
