@@ -1,6 +1,8 @@
 // Options of a repair.
 #pragma once
 
+#include <cstddef>
+
 #include "mesh/relax/options.h"
 
 namespace prismesh::mesh::repair {
@@ -10,6 +12,7 @@ struct Options {
   double max_off_surface = 0.02;     ///< max distance of nodes and diagonals from the surface, as a fraction of the target size
   double max_triangles_percent = 5;  ///< of the whole model; triangles that are there already are allowed
   int max_rounds = 20;
+  std::size_t max_threads = 0;  ///< that repair pieces at once; 0: as many as the processor has. The result is the same for any number
 };
 
 }  // namespace prismesh::mesh::repair

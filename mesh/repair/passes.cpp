@@ -141,6 +141,8 @@ void tidy_triangles(const RepairContext& context, RepairState& state, double don
 
 void relax_neighbourhood(const RepairContext& context, RepairState& state) {
   if (!goes_on(state.progress, 0)) return;
+  // The last relaxation was taken back, and it would be the same again.
+  if (state.relaxing_refused_at == state.history.changes) return;
   Patch& patch = context.patch;
   std::vector<LocalShell> shells;
   const Model small = patch.as_model(shells);
@@ -158,10 +160,12 @@ void relax_neighbourhood(const RepairContext& context, RepairState& state) {
   patch.begin();
   for (std::size_t i = 0; i < relaxed->nodes.size(); ++i) patch.move(LocalNode(relaxed->nodes[i].value), relaxed->positions[i]);
   judge_shells(context, patch.changed_shells());
-  if (adds_failures(patch) || !conforms(patch))
+  if (adds_failures(patch) || !conforms(patch)) {
     patch.take_back();
-  else
+    state.relaxing_refused_at = state.history.changes;
+  } else {
     keep_change(patch, state.history);
+  }
 }
 
 }  // namespace prismesh::mesh::repair

@@ -57,7 +57,8 @@ struct RepairState {
   RoundProgress progress;
   ClusterState clusters{};
   Effort effort = kQuickEffort;
-  bool along_lines = false;  ///< node smoothing also moves nodes on feature lines
+  bool along_lines = false;                                         ///< node smoothing also moves nodes on feature lines
+  std::optional<std::uint32_t> relaxing_refused_at = std::nullopt;  ///< ChangeHistory::changes when a relaxation was taken back
 };
 
 }  // namespace prismesh::mesh::repair
