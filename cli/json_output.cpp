@@ -27,7 +27,7 @@ Json counts_of_elements(const deck::ElementCounts& counts) {
 Json bad_shells(const quality::Counts& counts) { return {{"warn", counts.warn}, {"fail", counts.fail}}; }
 
 Json stopped_object(const document::StoppedRepair& stopped) {
-  return {{"attempt", stopped.attempt},       {"step", stopped.step},        {"round", stopped.round}, {"max_rounds", stopped.max_rounds},
+  return {{"attempt", stopped.attempt},       {"steps", stopped.steps},        {"round", stopped.round}, {"max_rounds", stopped.max_rounds},
           {"bad_before", stopped.bad_before}, {"bad_left", stopped.bad_left}};
 }
 

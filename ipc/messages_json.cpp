@@ -83,7 +83,7 @@ PRISMESH_MESSAGE(ipc::DragEnded, "drag_ended", f("drag", m.drag), f("committed",
 PRISMESH_JSON_OBJECT(mesh::quality::Counts, f("ok", m.ok), f("warn", m.warn), f("fail", m.fail));
 PRISMESH_JSON_OBJECT(mesh::deck::Warning, f("file", m.file), f("line", m.line), f("kind", m.kind), f("message", m.message),
                      f("count", m.count));
-PRISMESH_JSON_OBJECT(mesh::document::StoppedRepair, f("attempt", m.attempt), f("step", m.step), f("round", m.round),
+PRISMESH_JSON_OBJECT(mesh::document::StoppedRepair, f("attempt", m.attempt), f("steps", m.steps), f("round", m.round),
                      f("max_rounds", m.max_rounds), f("bad_before", m.bad_before), f("bad_left", m.bad_left));
 PRISMESH_JSON_OBJECT(mesh::document::EditReport, f("edit", m.edit), f("nodes_moved", m.nodes_moved), f("elements_added", m.elements_added),
                      f("elements_removed", m.elements_removed), f("before", m.before), f("after", m.after),

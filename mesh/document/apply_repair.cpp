@@ -73,8 +73,8 @@ void note_clusters_left(const repair::Repaired& repaired, const Model& model, Ed
 }
 
 void note_stop(int attempt, int max_rounds, const repair::Repaired& repaired, EditReport& report) {
-  const StoppedRepair stopped{attempt,    repaired.stopped->step, repaired.rounds,
-                              max_rounds, repaired.bad_before,    repaired.stopped->bad_left};
+  const StoppedRepair stopped{attempt,    repaired.stopped->steps, repaired.rounds,
+                              max_rounds, repaired.bad_before,    repaired.bad_left};
   const std::string of_attempt = attempt > 1 ? " of attempt " + std::to_string(attempt) : "";
   const std::string left =
       stopped.bad_before > 0 ? ", with " + std::to_string(stopped.bad_left) + " of " + counted(stopped.bad_before, "bad element") + " left"
@@ -124,8 +124,8 @@ Result<repair::Repaired> repair_writable(RepairTask& task, const ShellSet& scope
   };
   const auto keeps = [&] { return task.edit.on_cancel == OnCancel::keep || progress.keeps(); };
   for (;; ++attempt) {
-    options.stop_at.reset();
-    if (edit.stop_at && edit.stop_at->attempt == attempt) options.stop_at = edit.stop_at->step;
+    options.stop_at.clear();
+    if (edit.stop_at && edit.stop_at->attempt == attempt) options.stop_at = edit.stop_at->steps;
     Result<repair::Repaired> repaired =
         repair::repair({current.model, surface, rules, judged_by(document), options, clusters}, scope, forward);
     if (!repaired) return repaired;

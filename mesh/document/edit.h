@@ -153,8 +153,8 @@ struct Relax {
 enum class OnCancel : std::uint8_t { discard, keep };
 /// Where a repair was stopped and kept. Replayed with it, the repair ends there again.
 struct StopPoint {
-  int attempt = 1;         ///< to find changes that can be written
-  std::uint64_t step = 1;  ///< of this attempt: repair::StoppedAt
+  int attempt = 1;                   ///< to find changes that can be written
+  std::vector<std::uint64_t> steps;  ///< of this attempt: repair::StoppedAt
 };
 /// Changes the structure locally until the bad shells are valid or nothing improves.
 struct Repair {

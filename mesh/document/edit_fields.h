@@ -86,7 +86,7 @@ inline constexpr NumberLimits kEdgeAngles{0, 180};
 inline constexpr NumberLimits kTurns{-36000, 36000};  ///< degrees: a hundred turns either way
 inline constexpr WholeNumberLimits kRings{1, 1'000'000};
 inline constexpr WholeNumberLimits kAttempts{1, 5};  ///< of a repair
-inline constexpr WholeNumberLimits kSteps{1, 1'000'000'000'000};
+inline constexpr ListLimits kSteps{1, 1'000'000, "whole numbers like [532, 0]", ""};
 inline constexpr ListLimits kOutline{3, 100'000, "points [x, y]", "point"};
 inline constexpr ListLimits kEntities{1, 1000, "entities like [\"shell:12\", \"shell:40\"]", ""};
 inline constexpr TwoWords kNormals{"grab", "each", "\"grab\" (all nodes along the normal at the grab) or \"each\""};
@@ -119,10 +119,10 @@ struct Definition<mesh::document::MoveLimits> {
 };
 template <>
 struct Definition<mesh::document::StopPoint> {
-  static constexpr std::string_view kExample = R"({"attempt": 1, "step": 532})";
+  static constexpr std::string_view kExample = R"({"attempt": 1, "steps": [532]})";
   static void fields(auto& m, auto& f) {
     f.required("attempt", m.attempt, kAttempts);
-    f.required("step", m.step, kSteps);
+    f.required("steps", m.steps, kSteps);
   }
 };
 PRISMESH_JSON_OBJECT(mesh::document::Shaping, f("on", m.on), f("grab", m.grab), f("grab_at", m.grab_at), f("falloff", m.weights.falloff),

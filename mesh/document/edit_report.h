@@ -14,9 +14,9 @@ namespace prismesh::mesh::document {
 
 /// A repair that ended before it was finished: a cancel kept what it had reached, or the edit says where to stop.
 struct StoppedRepair {
-  int attempt = 1;         ///< to find changes that can be written
-  std::uint64_t step = 0;  ///< of this attempt: repair::StoppedAt
-  int round = 0;           ///< of this attempt, from 1; 0: before the first
+  int attempt = 1;                   ///< to find changes that can be written
+  std::vector<std::uint64_t> steps;  ///< of this attempt: repair::StoppedAt
+  int round = 0;                     ///< of this attempt, from 1; 0: before the first
   int max_rounds = 0;
   std::size_t bad_before = 0;  ///< elements of the scope that failed or warned
   std::size_t bad_left = 0;

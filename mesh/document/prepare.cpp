@@ -46,7 +46,7 @@ Result<Prepared> prepare_push(const Document& document, const E& edit, std::stri
   if constexpr (std::is_same_v<E, Repair>)
     if (const std::optional<StoppedRepair>& stopped = prepared.report.stopped) {
       Repair done = edit;
-      done.stop_at = StopPoint{stopped->attempt, stopped->step};
+      done.stop_at = StopPoint{stopped->attempt, stopped->steps};
       prepared.as_done = std::move(done);
     }
   next->number = document.next_number;

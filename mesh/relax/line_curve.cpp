@@ -5,8 +5,6 @@
 
 #include <Eigen/Geometry>
 
-#include "mesh/relax/feature_lines.h"
-
 namespace prismesh::mesh::relax {
 
 namespace {
@@ -15,9 +13,9 @@ constexpr int kMaxPieces = 64;  ///< that a walk passes
 constexpr double kAtEnd = 1e-9;
 
 /// The other end of the line's next edge after `at`, coming from `from`; invalid at a corner.
-NodeIndex next_on_line(const Model& model, NodeIndex at, NodeIndex from, double cos_limit) {
-  const LineEnds ends = line_ends(model, at, cos_limit, true);
-  if (!passes_through(model, at, ends, cos_limit)) return {};
+NodeIndex next_on_line(const LineCache& lines, NodeIndex at, NodeIndex from) {
+  const auto& [ends, pass_through] = lines.at(at);
+  if (!pass_through) return {};
   return ends.other[0] == from ? ends.other[1] : ends.other[1] == from ? ends.other[0] : NodeIndex();
 }
 
@@ -41,13 +39,14 @@ struct Curve {
   Vec3 derivative(double t) const { return 6 * t * (1 - t) * (b - a) + (1 - t) * (1 - 3 * t) * at_a + t * (3 * t - 2) * at_b; }
 };
 
-Curve curve_of(const Model& model, LinePiece piece, double cos_limit) {
+Curve curve_of(const LineCache& lines, LinePiece piece) {
+  const Model& model = lines.model();
   const Vec3& a = model.position(piece.from);
   const Vec3& b = model.position(piece.to);
   const double length = (b - a).norm();
   const Vec3 chord = (b - a) / length;
-  const NodeIndex before = next_on_line(model, piece.from, piece.to, cos_limit);
-  const NodeIndex after = next_on_line(model, piece.to, piece.from, cos_limit);
+  const NodeIndex before = next_on_line(lines, piece.from, piece.to);
+  const NodeIndex after = next_on_line(lines, piece.to, piece.from);
   Vec3 first = before.valid() ? circle_tangent(model.position(before), a, b) : Vec3::Zero();
   Vec3 last = after.valid() ? circle_tangent(a, b, model.position(after)) : Vec3::Zero();
   if (!before.valid()) first = after.valid() ? mirrored(last, chord) : chord;
@@ -59,12 +58,13 @@ Curve curve_of(const Model& model, LinePiece piece, double cos_limit) {
 
 }  // namespace
 
-CurvePoint closest_on_piece(const Model& model, LinePiece piece, const Vec3& point, double cos_limit) {
+CurvePoint closest_on_piece(const LineCache& lines, LinePiece piece, const Vec3& point) {
+  const Model& model = lines.model();
   const Vec3 chord = model.position(piece.to) - model.position(piece.from);
   const double length2 = chord.squaredNorm();
   CurvePoint place{piece, model.position(piece.from), Vec3::Zero(), 0};
   if (length2 > 0) {
-    const Curve curve = curve_of(model, piece, cos_limit);
+    const Curve curve = curve_of(lines, piece);
     double t = std::clamp((point - curve.a).dot(chord) / length2, 0.0, 1.0);
     for (int i = 0; i < 4; ++i) {
       const Vec3 along = curve.derivative(t);
@@ -79,16 +79,17 @@ CurvePoint closest_on_piece(const Model& model, LinePiece piece, const Vec3& poi
   return place;
 }
 
-CurvePoint follow_line(const Model& model, LinePiece piece, const Vec3& point, double cos_limit) {
-  CurvePoint best = closest_on_piece(model, piece, point, cos_limit);
+CurvePoint follow_line(const LineCache& lines, LinePiece piece, const Vec3& point) {
+  const Model& model = lines.model();
+  CurvePoint best = closest_on_piece(lines, piece, point);
   for (int i = 0; i < kMaxPieces; ++i) {
     const bool at_from = best.point == model.position(best.piece.from);
     const bool at_to = best.point == model.position(best.piece.to);
     if (!at_from && !at_to) break;
     const NodeIndex turn = at_from ? best.piece.from : best.piece.to;
-    const NodeIndex next = next_on_line(model, turn, at_from ? best.piece.to : best.piece.from, cos_limit);
+    const NodeIndex next = next_on_line(lines, turn, at_from ? best.piece.to : best.piece.from);
     if (!next.valid()) break;
-    const CurvePoint beyond = closest_on_piece(model, at_from ? LinePiece{next, turn} : LinePiece{turn, next}, point, cos_limit);
+    const CurvePoint beyond = closest_on_piece(lines, at_from ? LinePiece{next, turn} : LinePiece{turn, next}, point);
     if (!(beyond.distance < best.distance)) break;
     best = beyond;
   }

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "mesh/model/model.h"
+#include "mesh/relax/line_cache.h"
 
 namespace prismesh::mesh::relax {
 
@@ -21,10 +22,10 @@ struct CurvePoint {
   double distance = 0;          ///< from the given point
 };
 
-/// The point of one piece that is nearest to `point`. `cos_limit`: cosine of the feature angle.
-CurvePoint closest_on_piece(const Model& model, LinePiece piece, const Vec3& point, double cos_limit);
+/// The point of one piece that is nearest to `point`.
+CurvePoint closest_on_piece(const LineCache& lines, LinePiece piece, const Vec3& point);
 
 /// The nearest point on the line of `piece`, found by walking from the piece, and not beyond corners.
-CurvePoint follow_line(const Model& model, LinePiece piece, const Vec3& point, double cos_limit);
+CurvePoint follow_line(const LineCache& lines, LinePiece piece, const Vec3& point);
 
 }  // namespace prismesh::mesh::relax

@@ -10,6 +10,7 @@
 
 #include "base/deterministic_math.h"
 #include "mesh/relax/feature_lines.h"
+#include "mesh/relax/line_cache.h"
 #include "mesh/relax/line_curve.h"
 #include "mesh/relax/sheet_fits.h"
 #include "mesh/spatial/closest_point.h"
@@ -112,7 +113,7 @@ double longest_diagonal(const Model& model, const ShellNodes& shell) {
 
 struct ReferenceSurface::Impl {
   Impl(const Model& of, const ShellSet& set, double feature_angle)
-      : model(of), shells(set), cos_limit(deterministic_cos_degrees(feature_angle)), sheets(model, cos_limit) {}
+      : model(of), shells(set), cos_limit(deterministic_cos_degrees(feature_angle)), sheets(model, cos_limit), lines(model, cos_limit) {}
 
   const spatial::ShellTree& tree() {
     std::call_once(tree_made, [this] { made_tree = std::make_unique<const spatial::ShellTree>(model, shells); });
@@ -127,6 +128,7 @@ struct ReferenceSurface::Impl {
   ShellSet shells;
   double cos_limit;
   SheetFits sheets;
+  LineCache lines;
   std::once_flag tree_made;
   std::unique_ptr<const spatial::ShellTree> made_tree;
 };
@@ -206,7 +208,7 @@ OnSurface ReferenceSurface::follow(ShellIndex from, const Vec3& point) const {
 }
 
 OnLine ReferenceSurface::follow_line(NodeIndex from, NodeIndex to, const Vec3& point) const {
-  return on_line(impl_->model, relax::follow_line(impl_->model, {from, to}, point, impl_->cos_limit));
+  return on_line(impl_->model, relax::follow_line(impl_->lines, {from, to}, point));
 }
 
 std::optional<OnSurface> ReferenceSurface::project(const Vec3& point, double radius, const std::optional<Vec3>& toward) const {
@@ -234,10 +236,8 @@ std::optional<OnLine> ReferenceSurface::find_line(const Vec3& point, double radi
     for (int i = 0; i < corners; ++i) {
       const NodeIndex a = std::min(nodes.node[i], nodes.node[next_corner(i, corners)]),
                       b = std::max(nodes.node[i], nodes.node[next_corner(i, corners)]);
-      if (a == b) continue;
-      const ShellIndex beyond = smooth_neighbour(model, near.shell, a, b, impl_->cos_limit);
-      if (beyond.valid() && model.shell_parts[beyond.value] == model.shell_parts[near.shell.value]) continue;
-      const CurvePoint place = closest_on_piece(model, {a, b}, point, impl_->cos_limit);
+      if (a == b || !impl_->lines.is_feature(near.shell, a, b)) continue;
+      const CurvePoint place = closest_on_piece(impl_->lines, {a, b}, point);
       if (!best || place.distance < best->distance) best = place;
     }
   }
@@ -246,7 +246,7 @@ std::optional<OnLine> ReferenceSurface::find_line(const Vec3& point, double radi
 }
 
 std::vector<NodeIndex> ReferenceSurface::lines_at(NodeIndex node) const {
-  const LineEnds ends = line_ends(impl_->model, node, impl_->cos_limit, true);
+  const LineEnds& ends = impl_->lines.at(node).ends;
   return {ends.other.begin(), ends.other.begin() + static_cast<std::ptrdiff_t>(ends.count)};
 }
 

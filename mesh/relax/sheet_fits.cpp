@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <new>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -20,13 +18,6 @@ constexpr std::size_t kUsualNodes = 32;  ///< about a node of an ordinary mesh: 
 constexpr std::size_t kUsualShells = 24;
 constexpr std::uint8_t kSmooth = 1;
 constexpr std::uint8_t kKinked = 2;
-
-template <class T>
-T* zeroed(std::size_t count) {
-  void* memory = std::calloc(std::max<std::size_t>(count, 1), sizeof(T));
-  if (memory == nullptr) throw std::bad_alloc();
-  return static_cast<T*>(memory);
-}
 
 int corner_of(const ShellNodes& shell, NodeIndex node) {
   for (int i = 0; i < shell.corners(); ++i)
@@ -112,8 +103,6 @@ LocalFit fit_sheet(const Model& model, const SheetFits& sheets, NodeIndex node, 
 }
 
 }  // namespace
-
-void SheetFits::Free::operator()(void* memory) const { std::free(memory); }
 
 SheetFits::SheetFits(const Model& model, double cos_limit)
     : model_(model),

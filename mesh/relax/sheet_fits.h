@@ -6,11 +6,11 @@
 #include <atomic>
 #include <cstddef>
 #include <deque>
-#include <memory>
 #include <mutex>
 
 #include "mesh/model/model.h"
 #include "mesh/relax/local_fit.h"
+#include "mesh/relax/zeroed_memory.h"
 
 namespace prismesh::mesh::relax {
 
@@ -28,16 +28,12 @@ class SheetFits {
 
  private:
   using Slot = std::atomic<const LocalFit*>;
-  struct Free {
-    void operator()(void* memory) const;
-  };
   const LocalFit& make(ShellIndex shell, int corner) const;
 
   const Model& model_;
   double cos_limit_;
-  // The system zeroes this memory page by page on first use, so that a large model costs nothing before.
-  std::unique_ptr<Slot[], Free> slots_;                             ///< four for each shell
-  std::unique_ptr<std::atomic<std::uint8_t>[], Free> node_states_;  ///< by node; 0: not known
+  ZeroedMemory<Slot> slots_;                             ///< four for each shell
+  ZeroedMemory<std::atomic<std::uint8_t>> node_states_;  ///< by node; 0: not known
   mutable std::mutex mutex_;
   mutable std::deque<LocalFit> fits_;
 };

@@ -1,8 +1,9 @@
 // Options of a repair.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-#include <optional>
+#include <vector>
 
 #include "mesh/relax/options.h"
 
@@ -13,7 +14,9 @@ struct Options {
   double max_off_surface = 0.02;     ///< max distance of nodes and diagonals from the surface, as a fraction of the target size
   double max_triangles_percent = 5;  ///< of the whole model; triangles that are there already are allowed
   int max_rounds = 20;
-  std::optional<std::uint64_t> stop_at;  ///< the step at which to stop, as `StoppedAt::step` of a repair that was stopped; from 1
+  /// The step at which to stop each piece, as `StoppedAt::steps` of a repair that was stopped; 0 or missing: it isn't stopped.
+  std::vector<std::uint64_t> stop_at;
+  std::size_t max_threads = 0;  ///< that repair pieces at once; 0: as many as the processor has. The result is the same for any number
 };
 
 }  // namespace prismesh::mesh::repair

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <set>
-#include <string>
 #include <utility>
 
 #include "mesh/relax/relax.h"
@@ -21,18 +20,11 @@ namespace {
 
 constexpr int kMaxStripPasses = 4;
 
-std::string words_of(const RoundProgress& progress) {
-  std::string words = "round " + std::to_string(progress.round + 1);
-  if (progress.bad_before > 0)
-    words += ", " + std::to_string(progress.bad_left()) + " of " + std::to_string(progress.bad_before) + " bad elements left";
-  return words;
-}
-
 /// Reports the share of the round that is done; false: the repair was cancelled. The number of rounds isn't known before: each counts as
 /// 40 % of what is left.
 bool reports(RoundProgress& progress, double done) {
   if (!progress.stopped && progress.progress &&
-      !progress.progress(1 - std::pow(0.6, progress.round + done), [&] { return words_of(progress); }))
+      !progress.progress(1 - std::pow(0.6, progress.round + done)))
     progress.stopped = cancelled();
   return !progress.stopped;
 }
@@ -154,6 +146,8 @@ void tidy_triangles(const RepairContext& context, RepairState& state, double don
 
 void relax_neighbourhood(const RepairContext& context, RepairState& state) {
   if (!goes_on(state.progress, 0)) return;
+  // The last relaxation was taken back, and it would be the same again.
+  if (state.relaxing_refused_at == state.history.changes) return;
   Patch& patch = context.patch;
   std::vector<LocalShell> shells;
   const Model small = patch.as_model(shells);
@@ -171,10 +165,12 @@ void relax_neighbourhood(const RepairContext& context, RepairState& state) {
   patch.begin();
   for (std::size_t i = 0; i < relaxed->nodes.size(); ++i) patch.move(LocalNode(relaxed->nodes[i].value), relaxed->positions[i]);
   judge_shells(context, patch.changed_shells());
-  if (adds_failures(patch) || !conforms(patch))
+  if (adds_failures(patch) || !conforms(patch)) {
     patch.take_back();
-  else
+    state.relaxing_refused_at = state.history.changes;
+  } else {
     keep_change(patch, state.history);
+  }
 }
 
 }  // namespace prismesh::mesh::repair

@@ -2,13 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <numeric>
 #include <string_view>
 #include <utility>
 
+#include "base/tasks.h"
 #include "mesh/repair/acceptance.h"
 #include "mesh/repair/change_history.h"
 #include "mesh/repair/clusters.h"
+#include "mesh/repair/merge.h"
 #include "mesh/repair/passes.h"
+#include "mesh/repair/pieces.h"
+#include "mesh/repair/pieces_progress.h"
 
 namespace prismesh::mesh::repair {
 
@@ -45,15 +51,27 @@ quality::LimitsByPart with_margin(quality::LimitsByPart limits) {
   return limits;
 }
 
-ChangeHistory history_of(const Patch& patch, const Model& model, const ShellSet& scope, double max_triangles_percent) {
+/// What every piece of a repair begins with: the triangles that are there and those that may be there.
+struct TriangleLimits {
+  long now = 0;
+  long may_be_added = 0;
+  long may_be_added_by_split = 0;
+};
+
+TriangleLimits triangle_limits(const Model& model, double max_triangles_percent) {
+  const auto now = static_cast<long>(triangles_in(model));
+  const auto allowed = static_cast<long>(max_triangles_percent / 100 * static_cast<double>(live_shells(model)));
+  return {now, std::max(allowed - now, 0L), std::max(kTriangleFactorOfSplits * allowed - now, 0L)};
+}
+
+ChangeHistory history_of(const Patch& patch, const ShellSet& scope, const TriangleLimits& limits) {
   ChangeHistory history;
   history.in_scope.assign(patch.shell_count(), 0);
-  for (const ShellIndex shell : scope)
-    if (const LocalShell local = patch.find(shell); local.valid()) history.in_scope[local.value] = 1;
-  history.triangles = static_cast<long>(triangles_in(model));
-  const auto allowed = static_cast<long>(max_triangles_percent / 100 * static_cast<double>(live_shells(model)));
-  history.max_triangles = std::max(allowed, history.triangles);
-  history.max_triangles_by_split = std::max(kTriangleFactorOfSplits * allowed, history.triangles);
+  for (std::size_t s = 0; s < patch.shell_count(); ++s)
+    history.in_scope[s] = std::binary_search(scope.begin(), scope.end(), patch.shell(LocalShell(s)).model) ? 1 : 0;
+  history.triangles = limits.now;
+  history.max_triangles = limits.now + limits.may_be_added;
+  history.max_triangles_by_split = limits.now + limits.may_be_added_by_split;
   return history;
 }
 
@@ -128,26 +146,63 @@ std::size_t added_pairs(const Patch& patch, const std::vector<std::pair<LocalNod
       std::count_if(now.begin(), now.end(), [&](const auto& edge) { return !std::binary_search(before.begin(), before.end(), edge); }));
 }
 
-}  // namespace
+/// The limits that all shells are judged by.
+struct LimitsOfRepair {
+  quality::LimitsByPart exact;
+  quality::LimitsByPart strict;  ///< while the repair goes on
+};
 
-Result<Repaired> repair(const RepairInput& input, const ShellSet& scope, const Progress& progress) {
+/// A repair before it is divided into pieces.
+struct WholeRepair {
+  const RepairInput& input;
+  const ShellSet& scope;
+  LimitsOfRepair limits;
+  ClusterState clusters;
+  TriangleLimits triangles;
+  std::size_t bad_before = 0;
+  std::vector<Piece> pieces;
+};
+
+WholeRepair divide_repair(const RepairInput& input, const ShellSet& scope) {
+  WholeRepair whole{input, scope, {quality::limits_for(input.criteria), {}}, cluster_state_of(input), {}, 0, {}};
+  whole.limits.strict = with_margin(whole.limits.exact);
+  whole.triangles = triangle_limits(input.model, input.options.max_triangles_percent);
   Patch patch(input.model, scope, kRingsOfPatch, input.rules, input.options.relax.feature_angle);
-  const RepairContext exact{patch, input.surface, input.criteria, input.options, quality::limits_for(input.criteria)};
-  const RepairContext strict{patch, input.surface, input.criteria, input.options, with_margin(exact.limits)};
-  RepairState state{history_of(patch, input.model, scope, input.options.max_triangles_percent), {}, {progress, input.options.stop_at}};
-  state.progress.bad_left = [&] { return bad_shells(patch, state.history, quality::Grade::warn).size(); };
-  state.clusters = cluster_state_of(input);
-  Repaired repaired;
-  repaired.clusters_before = input.clusters.size();
-  judge_all(exact);
-  repaired.bad_before = bad_shells(patch, state.history, quality::Grade::warn).size();
+  const ChangeHistory history = history_of(patch, scope, whole.triangles);
+  judge_all({patch, input.surface, input.criteria, input.options, whole.limits.exact});
+  whole.bad_before = bad_shells(patch, history, quality::Grade::warn).size();
+  const RepairContext strict{patch, input.surface, input.criteria, input.options, whole.limits.strict};
   judge_all(strict);
-  state.progress.bad_before = state.progress.bad_left();
+  whole.pieces = pieces_of(strict, history, input.clusters);
+  return whole;
+}
+
+std::optional<std::uint64_t> stop_of(const Options& options, std::size_t piece) {
+  if (piece >= options.stop_at.size() || options.stop_at[piece] == 0) return std::nullopt;
+  return options.stop_at[piece];
+}
+
+/// Repairs one piece, which may add the triangles of `share`. When it is stopped, it returns what it has reached.
+Result<Repaired> repair_piece(const WholeRepair& whole, std::size_t piece, const TriangleLimits& share, PiecesProgress& pieces,
+                              const std::function<void()>& wake) {
+  const RepairInput& input = whole.input;
+  Patch patch(input.model, whole.pieces[piece].shells, 0, input.rules, input.options.relax.feature_angle);
+  const RepairContext exact{patch, input.surface, input.criteria, input.options, whole.limits.exact};
+  const RepairContext strict{patch, input.surface, input.criteria, input.options, whole.limits.strict};
+  const RoundProgress* round = nullptr;
+  const Progress progress = pieces.of(piece, wake, [&] { return PieceStatus{round->round + 1, round->bad_left()}; });
+  RepairState state{.history = history_of(patch, whole.scope, share), .record = {}, .progress = {progress, stop_of(input.options, piece)}};
+  round = &state.progress;
+  state.progress.bad_left = [&] { return bad_shells(patch, state.history, quality::Grade::warn).size(); };
+  state.clusters = whole.clusters;
+  Repaired repaired;
+  judge_all(strict);
   const auto pairs_before = pair_edges(patch);
   repaired.rounds = run_rounds(strict, state);
   if (state.progress.stopped && !is_cancelled(*state.progress.stopped)) return fail(*state.progress.stopped);
   judge_all(exact);
-  if (state.progress.stopped) repaired.stopped = StoppedAt{state.progress.step, state.progress.bad_left()};
+  if (state.progress.stopped) repaired.stopped = StoppedAt{{state.progress.step}};
+  repaired.bad_left = state.progress.bad_left();
   std::vector<ShellIndex> index_of;
   repaired.change = patch.result(&index_of);
   repaired.relaxed = repaired.change.moved.size();
@@ -156,6 +211,50 @@ Result<Repaired> repair(const RepairInput& input, const ShellSet& scope, const P
   repaired.triangle_pairs = added_pairs(patch, pairs_before);
   repaired.unrepaired = unrepaired_shells(patch, state, index_of);
   return repaired;
+}
+
+/// The shares of the triangles that may be added, by piece.
+std::vector<TriangleLimits> triangle_shares(const WholeRepair& whole) {
+  const std::vector<long> shares = shares_of(whole.pieces, whole.triangles.may_be_added);
+  const std::vector<long> shares_by_split = shares_of(whole.pieces, whole.triangles.may_be_added_by_split);
+  std::vector<TriangleLimits> limits;
+  for (std::size_t i = 0; i < shares.size(); ++i) limits.push_back({whole.triangles.now, shares[i], shares_by_split[i]});
+  return limits;
+}
+
+/// The numbers of the pieces, those with the most work first: so that the last thread to end has little left.
+std::vector<std::size_t> by_work(const std::vector<Piece>& pieces) {
+  std::vector<std::size_t> order(pieces.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return pieces[a].work > pieces[b].work; });
+  return order;
+}
+
+}  // namespace
+
+Result<Repaired> repair(const RepairInput& input, const ShellSet& scope, const Progress& progress) {
+  const WholeRepair whole = divide_repair(input, scope);
+  const std::vector<TriangleLimits> shares = triangle_shares(whole);
+  const std::vector<std::size_t> order = by_work(whole.pieces);
+  PiecesProgress all_progress(whole.pieces, progress);
+  std::vector<Result<Repaired>> results(whole.pieces.size());
+  run_tasks(
+      order.size(), input.options.max_threads,
+      [&](std::size_t i, const std::function<void()>& wake) {
+        const std::size_t piece = order[i];
+        results[piece] = repair_piece(whole, piece, shares[piece], all_progress, wake);
+        all_progress.ended(piece, results[piece] ? results[piece]->bad_left : 0, wake);
+      },
+      [&] { all_progress.report(); });
+  std::vector<Repaired> repaired;
+  for (Result<Repaired>& result : results) {
+    if (!result) return fail(result.error());
+    repaired.push_back(std::move(*result));
+  }
+  Repaired all = merge(input.model, repaired);
+  all.bad_before = whole.bad_before;
+  all.clusters_before = input.clusters.size();
+  return all;
 }
 
 }  // namespace prismesh::mesh::repair

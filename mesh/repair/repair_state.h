@@ -50,7 +50,6 @@ struct RoundProgress {
   const Progress& progress;
   std::optional<std::uint64_t> stop_at = std::nullopt;  ///< Options::stop_at
   std::function<std::size_t()> bad_left = {};           ///< counts the shells of the scope that fail or warn
-  std::size_t bad_before = 0;
   int round = 0;           ///< from 0
   std::uint64_t step = 0;  ///< begun so far; between two steps the patch is as valid as after a repair
   std::optional<Error> stopped = std::nullopt;
@@ -62,7 +61,8 @@ struct RepairState {
   RoundProgress progress;
   ClusterState clusters{};
   Effort effort = kQuickEffort;
-  bool along_lines = false;  ///< node smoothing also moves nodes on feature lines
+  bool along_lines = false;                                         ///< node smoothing also moves nodes on feature lines
+  std::optional<std::uint32_t> relaxing_refused_at = std::nullopt;  ///< ChangeHistory::changes when a relaxation was taken back
 };
 
 }  // namespace prismesh::mesh::repair

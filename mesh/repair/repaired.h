@@ -22,14 +22,14 @@ struct Unrepaired {
 
 /// Where a repair was stopped. The same repair with `Options::stop_at` at this step gives the same result, whatever the number of threads.
 struct StoppedAt {
-  std::uint64_t step = 0;    ///< from 1
-  std::size_t bad_left = 0;  ///< shells of the scope that fail or warn
+  std::vector<std::uint64_t> steps;  ///< of each piece, from 1; 0: it had been finished
 };
 
 struct Repaired {
   Restructuring change;
   std::array<std::size_t, kOperationCount> done{};  ///< accepted operations, by Operation
   std::size_t relaxed = 0;                          ///< nodes that moved
+  std::size_t bad_left = 0;                         ///< shells of the scope that fail or warn now
   std::size_t bad_before = 0;                       ///< shells of the scope that failed or warned
   std::size_t clusters_before = 0;                  ///< nodes of the scope with too many triangles about them
   std::vector<ClusterLeft> clusters_left;           ///< those that are left, and those that the repair made

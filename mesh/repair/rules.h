@@ -28,7 +28,7 @@ struct Rules {
   /// Whether a new node may be put between two nodes: their constraints agree, and no other element has the edge.
   std::function<bool(NodeIndex, NodeIndex)> may_divide;
   /// Whether two shells may be divided anew together, so that each gets area of the other: the same sets name both.
-  std::function<bool(ShellIndex, ShellIndex)> may_exchange;
+  std::function<bool(ShellIndex, ShellIndex)> may_exchange{};
 };
 
 }  // namespace prismesh::mesh::repair

@@ -85,13 +85,13 @@ TEST(Messages, a_stopped_repair_survives_the_way) {
   EXPECT_EQ(made.doing, "round 3");
   EXPECT_EQ(made.seconds, 25u);
   Edited edited;
-  edited.report.stopped = mesh::document::StoppedRepair{2, 77, 3, 20, 1109, 41};
+  edited.report.stopped = mesh::document::StoppedRepair{2, {77, 0}, 3, 20, 1109, 41};
   const Result<FromDaemon> answer = decode_from_daemon(encode_answer(1, edited, 0));
   ASSERT_TRUE(answer) << answer.error().text();
   const auto& stopped = std::get<Edited>(std::get<Answer>(answer->message)).report.stopped;
   ASSERT_TRUE(stopped);
   EXPECT_EQ(stopped->attempt, 2);
-  EXPECT_EQ(stopped->step, 77u);
+  EXPECT_EQ(stopped->steps, (std::vector<std::uint64_t>{77, 0}));
   EXPECT_EQ(stopped->round, 3);
   EXPECT_EQ(stopped->max_rounds, 20);
   EXPECT_EQ(stopped->bad_before, 1109u);

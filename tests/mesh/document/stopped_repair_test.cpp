@@ -120,7 +120,7 @@ TEST(StoppedRepair, is_replayed_from_its_journal_to_the_same_bytes) {
     ASSERT_EQ(intents->edits.size(), 1u);
     const auto& intent = std::get<Repair>(intents->edits[0]);
     ASSERT_TRUE(intent.stop_at);
-    EXPECT_EQ(intent.stop_at->step, stopped.step);
+    EXPECT_EQ(intent.stop_at->steps, stopped.steps);
     Document replayed = opened;
     const std::vector<ReplayStep> steps = replay(replayed, *intents);
     ASSERT_EQ(steps.size(), 1u);
@@ -173,11 +173,11 @@ TEST(StoppedRepair, stop_at_is_an_object_with_both_fields) {
     const Result<Edit> edit = parse_edit(R"({"edit":"repair",)" + field + "}");
     return edit ? "accepted" : edit.error().message;
   };
-  EXPECT_EQ(refused(R"("stop_at":{"attempt":2,"step":7})"), "accepted");
-  EXPECT_THAT(refused(R"("stop_at":7)"), HasSubstr(R"("stop_at" must be an object like {"attempt": 1, "step": 532})"));
-  EXPECT_THAT(refused(R"("stop_at":{"attempt":1})"), HasSubstr("step"));
-  EXPECT_THAT(refused(R"("stop_at":{"attempt":6,"step":1})"), HasSubstr("a whole number between 1 and 5"));
-  EXPECT_THAT(refused(R"("stop_at":{"attempt":1,"step":0})"), HasSubstr("a whole number between 1 and "));
+  EXPECT_EQ(refused(R"("stop_at":{"attempt":2,"steps":[7,0]})"), "accepted");
+  EXPECT_THAT(refused(R"("stop_at":7)"), HasSubstr(R"("stop_at" must be an object like {"attempt": 1, "steps": [532]})"));
+  EXPECT_THAT(refused(R"("stop_at":{"attempt":1})"), HasSubstr("steps"));
+  EXPECT_THAT(refused(R"("stop_at":{"attempt":6,"steps":[1]})"), HasSubstr("a whole number between 1 and 5"));
+  EXPECT_THAT(refused(R"("stop_at":{"attempt":1,"steps":[-1]})"), HasSubstr("a list of 1 to 1000000 whole numbers"));
   EXPECT_THAT(refused(R"("on_cancel":"kep")"), HasSubstr("on_cancel"));
   EXPECT_THAT(refused(R"("on_cancel":"kep")"), HasSubstr("keep"));
   EXPECT_THAT(refused(R"("on_cancel":true)"), HasSubstr("on_cancel"));

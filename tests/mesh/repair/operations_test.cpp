@@ -283,8 +283,8 @@ TEST(DivideEdge, between_a_triangle_and_a_quad_is_taken_where_nothing_else_helps
   ASSERT_GE(counts(bad).fail, 2u) << "the edge is more than twice as long as it should be";
   const std::size_t quad = (Taper::kRows - 1) * Taper::kLower + Taper::kGap, tip = taper.shells.size() - 1;
   Rules rules;  // nothing but the two can be divided, and their edge keeps its length
-  rules.shell = [=](ShellIndex s) { return std::uint8_t{s == shell_at(quad) || s == shell_at(tip) ? 0 : kIndivisible}; };
-  rules.node = [&](NodeIndex n) { return std::uint8_t{n == at(taper.first) || n == at(taper.first + 1) ? kStays : 0}; };
+  rules.shell = [=](ShellIndex s) { return s == shell_at(quad) || s == shell_at(tip) ? std::uint8_t{0} : std::uint8_t{kIndivisible}; };
+  rules.node = [&](NodeIndex n) { return n == at(taper.first) || n == at(taper.first + 1) ? std::uint8_t{kStays} : std::uint8_t{0}; };
   const relax::ReferenceSurface surface(bad, all_shells(bad), 30);
   const auto repaired = repair({bad, surface, rules, criteria, {}}, all_shells(bad));
   ASSERT_TRUE(repaired.has_value());

@@ -322,9 +322,9 @@ struct Interrupted {
     plant_wrong_edge(mesh, grid, 8, 8);
     return mesh.model();
   }
-  Repaired repair_until(const Progress& progress, std::optional<std::uint64_t> stop_at = std::nullopt) const {
+  Repaired repair_until(const Progress& progress, std::vector<std::uint64_t> stop_at = {}) const {
     Options options;
-    options.stop_at = stop_at;
+    options.stop_at = std::move(stop_at);
     return repair({bad, surface, {}, {quality::default_criteria(), 1.0}, options}, bad_shells(bad, quality::Grade::warn), progress).value();
   }
 };
@@ -343,15 +343,15 @@ TEST(Stopped, a_repair_returns_what_it_has_reached_and_the_same_again_at_that_st
     EXPECT_EQ(asked, stop + 1) << "asked no more";
     const Model kept = carried_out(sheet.bad, stopped.change);
     EXPECT_EQ(what_is_wrong(kept), "");
-    EXPECT_EQ(bad_shells(kept, quality::Grade::warn).size(), stopped.stopped->bad_left);
+    EXPECT_EQ(bad_shells(kept, quality::Grade::warn).size(), stopped.bad_left);
     for (const ShellIndex shell : bad_shells(kept, quality::Grade::fail))
       EXPECT_TRUE(shell.value >= sheet.bad.shell_count() || grade_of(sheet.bad, shell) == quality::Grade::fail) << shell.value;
-    const Repaired again = sheet.repair_until({}, stopped.stopped->step);
+    const Repaired again = sheet.repair_until({}, stopped.stopped->steps);
     ASSERT_TRUE(again.stopped);
     EXPECT_EQ(again.change.moved, stopped.change.moved);
     EXPECT_EQ(again.change.reshaped, stopped.change.reshaped);
     EXPECT_EQ(again.done, stopped.done);
-    EXPECT_EQ(again.stopped->bad_left, stopped.stopped->bad_left);
+    EXPECT_EQ(again.bad_left, stopped.bad_left);
     changed += stopped.change.empty() ? 0 : 1;
   }
   EXPECT_GT(changed, 3u);

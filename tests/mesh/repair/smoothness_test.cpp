@@ -145,7 +145,7 @@ INSTANTIATE_TEST_SUITE_P(OfThreeShapes, Bumps,
                          testing::Values(Bump{"round", 4, [](double x, double y) { return std::hypot(x, y) / 4; }},
                                          Bump{"small", 3, [](double x, double y) { return std::hypot(x, y) / 3.5; }},
                                          Bump{"long", 6, [](double x, double y) { return std::hypot(x / 6, y / 3.5); }}),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& each) { return std::string(each.param.name); });
 
 }  // namespace
 }  // namespace prismesh::mesh::repair
