@@ -56,7 +56,7 @@ std::size_t calls_of_a_whole_repair(const Document& document) {
 /// Calls at which to stop: the first ones, and then more and more sparsely.
 std::vector<std::size_t> stops_of(std::size_t calls) {
   std::vector<std::size_t> stops;
-  for (std::size_t stop = 0; stop < calls; stop += 1 + stop / 2) stops.push_back(stop);
+  for (std::size_t stop = 0; stop < calls; stop += 1 + stop) stops.push_back(stop);
   return stops;
 }
 

@@ -102,7 +102,7 @@ TEST(Unwritable, a_repair_that_is_stopped_before_it_can_be_written_says_so_and_c
   must_apply(document, dent(sheet_node(3, 4)));
   std::size_t calls = 0, refused = 0, kept = 0;
   ASSERT_TRUE(prepare(document, edit_of(R"({"edit":"repair"})"), [&](double) { return ++calls > 0; }));
-  for (std::size_t stop = 0; stop < calls; stop += 1 + calls / 60) {
+  for (std::size_t stop = 1; stop < calls; stop *= 2) {
     std::size_t asked = 0;
     const Progress keeping{[&](double) { return asked++ < stop; }, [] { return true; }};
     const Result<Prepared> prepared = prepare(document, edit_of(R"({"edit":"repair"})"), keeping);
