@@ -111,7 +111,8 @@ void Editor::own_command(std::uint8_t number) {
   switch (static_cast<EditorCommand>(number)) {
     case EditorCommand::undo: tools::send(context_, mesh::document::Undo{}); break;
     case EditorCommand::redo: tools::send(context_, mesh::document::Redo{}); break;
-    case EditorCommand::cancel: cancel(); break;
+    case EditorCommand::cancel: cancel(false); break;
+    case EditorCommand::stop_and_keep: cancel(true); break;
     case EditorCommand::menu: toggle_cover(Cover::menu); break;
     case EditorCommand::help: toggle_cover(Cover::help); break;
     case EditorCommand::deck_warnings:
@@ -124,9 +125,9 @@ void Editor::own_command(std::uint8_t number) {
 
 void Editor::toggle_cover(Cover cover) { tools::set_cover(context_, context_.open.cover == cover ? Cover::none : cover); }
 
-/// What lies on top goes first.
-void Editor::cancel() {
-  if (context_.link.can_stop()) return context_.link.stop();
+/// What lies on top goes first. `keep`: what a repair has reached.
+void Editor::cancel(bool keep) {
+  if (context_.link.can_stop()) return context_.link.stop(keep);
   if (tools_.dragging()) return cancel_gesture();
   if (Tool* asking = tools_.asking(); asking != nullptr)
     asking->reply(tools::Reply::cancel);

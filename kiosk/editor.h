@@ -76,7 +76,7 @@ class Editor {
   void take_newest();
   void own_command(std::uint8_t number);
   void toggle_cover(tools::Cover cover);
-  void cancel();
+  void cancel(bool keep);
 
   tools::Notices notices_;
   tools::ToolSet tools_;

@@ -11,7 +11,7 @@ namespace prismesh::kiosk {
 
 inline constexpr std::string_view kEditorName = "editor";
 
-enum class EditorCommand : std::uint8_t { deck_warnings, undo, redo, cancel, rearm, fullscreen, menu, help };
+enum class EditorCommand : std::uint8_t { deck_warnings, undo, redo, cancel, stop_and_keep, rearm, fullscreen, menu, help };
 
 constexpr tools::Command command_of(EditorCommand command) { return {kEditorName, static_cast<std::uint8_t>(command)}; }
 
@@ -27,6 +27,8 @@ inline constexpr std::array kDocumentKeys = {
 inline constexpr std::array kCancelKeys = {
     tools::KeyBinding{display::Key::escape, false, false, command_of(EditorCommand::cancel), tools::Menu::edit, "Esc",
                       "stop what takes long, cancel a drag, close a panel, or clear the selection"},
+    tools::KeyBinding{display::Key::escape, false, true, command_of(EditorCommand::stop_and_keep), tools::Menu::edit, "Shift+Esc",
+                      "stop a repair and keep what it has reached; otherwise as Esc"},
 };
 
 inline constexpr std::array kWindowKeys = {

@@ -123,7 +123,8 @@ Result<void> WindowedKiosk::take_key(const display::KeyChanged& event) {
   if (digit && !event.modifiers.ctrl && !event.modifiers.alt && station_.editor.takes_numbers(pointer_on_picture())) return {};
   const tools::KeyBinding* binding = tools::binding_for(key_bindings(), event.key, event.modifiers);
   if (binding == nullptr || (event.repeat && !binding->repeats())) return {};
-  const bool cancels = binding->command == command_of(EditorCommand::cancel);
+  const bool cancels =
+      binding->command == command_of(EditorCommand::cancel) || binding->command == command_of(EditorCommand::stop_and_keep);
   // While a path is typed the keyboard is the text field's.
   if (station_.editor.dialog_open() ? !cancels : station_.screen.gui().wants_keys()) return {};
   gestures_.forget_click();

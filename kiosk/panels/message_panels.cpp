@@ -60,7 +60,7 @@ void state_panel(const StateFacts& facts, display::PixelSize picture) {
     elided_text(printable(facts.socket), ImGui::GetContentRegionAvail().x);
     ImGui::PopFont();
   } else if (!facts.busy.empty()) {
-    ImGui::TextUnformatted(printable(facts.busy).c_str());
+    ImGui::TextUnformatted(printable_lines(facts.busy).c_str());
     ImGui::ProgressBar(static_cast<float>(facts.busy_fraction), ImVec2(-1, kGrid), "");
   } else {
     ImGui::PushFont(title_font());

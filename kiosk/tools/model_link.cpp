@@ -42,11 +42,16 @@ static bool is_of(std::string_view edit, mesh::document::EditGroup group) {
 
 bool is_selecting(std::string_view edit) { return is_of(edit, mesh::document::EditGroup::selection); }
 
+constexpr std::string_view kRepair = "repair";  ///< the work that can be stopped and kept
+
 /// What the server is doing, in words.
-static std::string busy_words(const std::string& what, bool can_stop) {
-  std::string words = what == "open" ? "opening" : what == "relax" ? "relaxing" : what == "repair" ? "repairing" : what;
+static std::string busy_words(const ipc::ProgressMade& made, bool can_stop) {
+  const std::string& what = made.what;
+  std::string words = what == "open" ? "opening" : what == "relax" ? "relaxing" : what == kRepair ? "repairing" : what;
   if (!words.empty() && words[0] >= 'a' && words[0] <= 'z') words[0] = static_cast<char>(words[0] - 'a' + 'A');
-  return words + (can_stop ? " ..   Esc stops it" : " ..");
+  if (!made.doing.empty()) words += fmt::format(": {}, {} s", made.doing, made.seconds);
+  if (!can_stop) return words + " ..";
+  return words + (what == kRepair ? "\nEsc stops and discards it, Shift+Esc stops and keeps it" : " ..   Esc stops it");
 }
 
 /// Whether the server tells how far it is with it, and can be asked to stop.
@@ -160,7 +165,7 @@ void ModelLink::heard(const ipc::Event& event) {
                  },
                  [&](const ipc::ProgressMade& progress) {
                    const bool over = progress.fraction >= 1, named = progress.what == "open" && busy_.starts_with("Opening ");
-                   if (over || !named) busy_ = over ? std::string() : busy_words(progress.what, long_ > 0);
+                   if (over || !named) busy_ = over ? std::string() : busy_words(progress, long_ > 0);
                    busy_fraction_ = progress.fraction;
                  },
                  [&](const ipc::CameraMoved& moved) { camera_ = moved.camera; },
@@ -266,7 +271,7 @@ bool ModelLink::is_refused_for_edits(const ipc::Failed& failed) const {
 void ModelLink::open(const std::filesystem::path& deck, bool discard) {
   std::error_code ignored;
   const std::filesystem::path whole = std::filesystem::absolute(deck, ignored);
-  busy_ = busy_words("Opening " + whole.filename().string(), true);
+  busy_ = busy_words({"Opening " + whole.filename().string()}, true);
   busy_fraction_ = 0;
   ipc::Open request;
   request.path = whole.string();
@@ -345,8 +350,8 @@ void ModelLink::share_camera(const ipc::Camera& camera) {
   if (const Result<std::uint64_t> sent = client_->send(ipc::ShareCamera{camera}); !sent) lost(sent.error());
 }
 
-void ModelLink::stop() {
-  if (client_ && long_ > 0) ask(ipc::Cancel{}, [](const ipc::Answer&) {});  // the answer doesn't matter: it may be over already
+void ModelLink::stop(bool keep) {
+  if (client_ && long_ > 0) ask(ipc::Cancel{keep}, [](const ipc::Answer&) {});  // the answer doesn't matter: it may be over already
 }
 
 void ModelLink::begin_drag(mesh::document::Edit edit) {

@@ -98,8 +98,8 @@ class ModelLink {
   bool editing() const { return edits_ > 0; }
   /// A request of this client (opening, saving, an edit, a field) takes so long that the server tells its progress.
   bool can_stop() const { return long_ > 0 && !busy_.empty(); }
-  /// Asks the server to stop it; a request that was stopped has no effect.
-  void stop();
+  /// Asks the server to stop it. A request that was stopped has no effect; with `keep`, a repair keeps what it has reached.
+  void stop(bool keep = false);
 
   /// Sends a request that changes nothing. `then` gets the answer; never, if the connection ends before.
   void question(const ipc::Request& request, Then then);

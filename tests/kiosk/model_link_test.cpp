@@ -75,12 +75,19 @@ class SlowServer final : public ipc::ServerHandler {
       asked_ = request->number;
       ++times_asked_;
       changed_.notify_all();
-    } else if (std::holds_alternative<ipc::Cancel>(request->request)) {
+    } else if (const auto* cancel = std::get_if<ipc::Cancel>(&request->request)) {
       answer(client, request->number, ipc::Done{}, {});
-      if (long_ != 0) answer(client, std::exchange(long_, 0), ipc::Failed{"", 0, cancelled().message}, {});
+      if (long_ == 0) return;
+      if (cancel->keep)
+        answer(client, std::exchange(long_, 0), stopped_and_kept(), {});
+      else
+        answer(client, std::exchange(long_, 0), ipc::Failed{"", 0, cancelled().message}, {});
     } else {
       long_ = request->number;
-      server_.send(client, ipc::encode_event(ipc::ProgressMade{"open", 0.5}), {});
+      const auto* edit = std::get_if<ipc::ApplyEdit>(&request->request);
+      const bool repairs = edit != nullptr && std::holds_alternative<mesh::document::Repair>(edit->edit);
+      const ipc::ProgressMade repairing{"repair", 0.5, "round 3, 41 of 1109 bad elements left", 25};
+      server_.send(client, ipc::encode_event(repairs ? repairing : ipc::ProgressMade{"open", 0.5, "", 0}), {});
     }
   }
   /// Waits until a snapshot has been asked for.
@@ -109,6 +116,12 @@ class SlowServer final : public ipc::ServerHandler {
   }
 
  private:
+  static ipc::Edited stopped_and_kept() {
+    ipc::Edited edited;
+    edited.report.edit = "repair";
+    edited.report.notes = {"stopped in round 3"};
+    return edited;
+  }
   void answer(ipc::ClientId client, std::uint64_t number, const ipc::Answer& what, std::vector<ipc::Descriptor> descriptors) {
     const std::size_t count = descriptors.size();
     server_.send(client, ipc::encode_answer(number, what, count), std::move(descriptors));
@@ -192,6 +205,29 @@ TEST(ModelLinkTest, whatever_takes_long_can_be_stopped_and_says_so) {
   }
   EXPECT_EQ(said, (std::vector<std::string>{"Stopped: other.k was not opened.", "Stopped: nothing was saved.",
                                             "Stopped: the model is as it was."}));
+}
+
+TEST(ModelLinkTest, a_repair_says_how_far_it_is_and_can_be_stopped_and_kept) {
+  const Folder folder;
+  SlowServer server(folder.socket());
+  MonotonicClock clock;
+  ModelLink link(folder.socket(), std::nullopt, clock, Trace(nullptr));
+  ASSERT_TRUE(turn_until(link, [&] { return link.connected(); }));
+  for (const bool keep : {false, true}) {
+    link.edit(mesh::document::Repair{});
+    ASSERT_TRUE(turn_until(link, [&] { return link.busy_fraction() == 0.5 && link.can_stop(); }));
+    EXPECT_EQ(link.busy(),
+              "Repairing: round 3, 41 of 1109 bad elements left, 25 s\nEsc stops and discards it, Shift+Esc stops and keeps it");
+    link.stop(keep);
+    ASSERT_TRUE(turn_until(link, [&] { return link.busy().empty(); })) << link.busy();
+    const std::vector<Notice> said = link.take_notices();
+    ASSERT_EQ(said.size(), 1u);
+    EXPECT_EQ(said[0].kind, Notice::Kind::information);
+    if (keep)
+      EXPECT_EQ(said[0].text, "repair: warn 0 \u2192 0, fail 0 \u2192 0\nstopped in round 3");
+    else
+      EXPECT_EQ(said[0].text, "Stopped: the model is as it was.");
+  }
 }
 
 }  // namespace

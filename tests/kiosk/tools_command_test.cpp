@@ -52,6 +52,8 @@ TEST(KeysTest, shift_tells_save_from_save_as_but_does_not_stop_a_plain_key) {
   EXPECT_EQ(row_of(display::letter('S'), {false, true, false}), "Ctrl+S");
   EXPECT_EQ(row_of(display::letter('S'), {true, true, false}), "Ctrl+Shift+S");
   EXPECT_EQ(row_of(display::letter('B'), {true, false, false}), "B");
+  EXPECT_EQ(row_of(display::Key::escape, {}), "Esc");
+  EXPECT_EQ(row_of(display::Key::escape, {true, false, false}), "Shift+Esc");
   EXPECT_EQ(row_of(display::letter('R'), {true, false, false}), "Shift+R") << "Shift+R has a meaning of its own";
 }
 
@@ -88,6 +90,7 @@ TEST(KeysTest, rows_keep_the_order_of_help_and_menu) {
                                              "Shift+C",
                                              "Ctrl+C",
                                              "Esc",
+                                             "Shift+Esc",
                                              "E",
                                              "L",
                                              "V",
@@ -185,7 +188,7 @@ TEST(KeysTest, what_edits_is_told_from_what_only_looks) {
     }
   }
   for (const std::string_view label : {"Ctrl+Z", "Ctrl+Y", "E", "G", "B", "I", "R", "N"}) EXPECT_TRUE(row(label).asks_for_edit()) << label;
-  for (const std::string_view label : {"C", "Esc", "L", "D"}) EXPECT_FALSE(row(label).asks_for_edit()) << label;
+  for (const std::string_view label : {"C", "Esc", "Shift+Esc", "L", "D"}) EXPECT_FALSE(row(label).asks_for_edit()) << label;
 }
 
 TEST(KeysTest, a_key_held_down_repeats_what_goes_on_in_steps) {
