@@ -269,7 +269,7 @@ TEST(PiecesProgress, stops_all_pieces_at_steps_that_can_be_repeated) {
     bool is_stopped = false;
     const auto stopped = job.run(threads, [&](double fraction) {
       calls_after += is_stopped ? 1 : 0;
-      is_stopped = is_stopped || fraction > 0.1;
+      is_stopped = is_stopped || fraction > 0.02;
       return !is_stopped;
     });
     ASSERT_TRUE(stopped.has_value());
