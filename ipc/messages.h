@@ -284,7 +284,7 @@ struct DocumentClosed {};
 struct ProgressMade {
   std::string what;
   double fraction = 0;
-  std::string doing;          ///< in words; empty: the work has none
+  std::string doing{};        ///< in words; empty: the work has none
   std::uint64_t seconds = 0;  ///< since the work began
 };
 struct DragEnded {
