@@ -27,8 +27,8 @@ Json counts_of_elements(const deck::ElementCounts& counts) {
 Json bad_shells(const quality::Counts& counts) { return {{"warn", counts.warn}, {"fail", counts.fail}}; }
 
 Json stopped_object(const document::StoppedRepair& stopped) {
-  return {{"attempt", stopped.attempt},       {"steps", stopped.steps},        {"round", stopped.round}, {"max_rounds", stopped.max_rounds},
-          {"bad_before", stopped.bad_before}, {"bad_left", stopped.bad_left}};
+  return {{"attempt", stopped.attempt},       {"steps", stopped.steps},           {"round", stopped.round},
+          {"max_rounds", stopped.max_rounds}, {"bad_before", stopped.bad_before}, {"bad_left", stopped.bad_left}};
 }
 
 Json edit_object(const document::EditReport& report) {

@@ -73,8 +73,7 @@ void note_clusters_left(const repair::Repaired& repaired, const Model& model, Ed
 }
 
 void note_stop(int attempt, int max_rounds, const repair::Repaired& repaired, EditReport& report) {
-  const StoppedRepair stopped{attempt,    repaired.stopped->steps, repaired.rounds,
-                              max_rounds, repaired.bad_before,    repaired.bad_left};
+  const StoppedRepair stopped{attempt, repaired.stopped->steps, repaired.rounds, max_rounds, repaired.bad_before, repaired.bad_left};
   const std::string of_attempt = attempt > 1 ? " of attempt " + std::to_string(attempt) : "";
   const std::string left =
       stopped.bad_before > 0 ? ", with " + std::to_string(stopped.bad_left) + " of " + counted(stopped.bad_before, "bad element") + " left"

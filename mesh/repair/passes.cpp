@@ -23,8 +23,7 @@ constexpr int kMaxStripPasses = 4;
 /// Reports the share of the round that is done; false: the repair was cancelled. The number of rounds isn't known before: each counts as
 /// 40 % of what is left.
 bool reports(RoundProgress& progress, double done) {
-  if (!progress.stopped && progress.progress &&
-      !progress.progress(1 - std::pow(0.6, progress.round + done)))
+  if (!progress.stopped && progress.progress && !progress.progress(1 - std::pow(0.6, progress.round + done)))
     progress.stopped = cancelled();
   return !progress.stopped;
 }

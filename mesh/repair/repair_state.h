@@ -50,8 +50,8 @@ struct RoundProgress {
   const Progress& progress;
   std::optional<std::uint64_t> stop_at = std::nullopt;  ///< Options::stop_at
   std::function<std::size_t()> bad_left = {};           ///< counts the shells of the scope that fail or warn
-  int round = 0;           ///< from 0
-  std::uint64_t step = 0;  ///< begun so far; between two steps the patch is as valid as after a repair
+  int round = 0;                                        ///< from 0
+  std::uint64_t step = 0;                               ///< begun so far; between two steps the patch is as valid as after a repair
   std::optional<Error> stopped = std::nullopt;
 };
 
