@@ -59,12 +59,14 @@ def read_png(path):
     return rows
 
 
-def box_of(before, after):
-    """The left and top corner of a box of PANEL's size about the median of the pixels that differ."""
-    different = [(x, y) for y in range(len(after)) if before[y] != after[y]
-                 for x in range(len(after[y]) // 4) if before[y][4 * x:4 * x + 4] != after[y][4 * x:4 * x + 4]]
+def box_of(shaped, repaired, field):
+    """The left and top corner of a box of PANEL's size about the median of the pixels that differ in all three."""
+    different = []
+    for y, rows in enumerate(zip(shaped, repaired, field)):
+        if len(set(rows)) == 3:
+            different += [(x, y) for x in range(len(rows[0]) // 4) if len({row[4 * x:4 * x + 4] for row in rows}) == 3]
     middle = (sorted(place[k] for place in different)[len(different) // 2] for k in (0, 1))
-    limits = len(after[0]) // 4 - PANEL[0], len(after) - PANEL[1]
+    limits = len(field[0]) // 4 - PANEL[0], len(field) - PANEL[1]
     return tuple(max(0, min(m - s // 2, limit)) for m, s, limit in zip(middle, PANEL, limits))
 
 
@@ -81,7 +83,7 @@ def make(file, deck, edit, size, target_size, limits):
         for which, more in ((shaped, ()), (repaired, ()), (repaired, field)):
             prismesh("render", which, "-o", picture, *sized, "--size", size, "--profile", "mono", *more)
             drawn.append(read_png(picture))
-        left, top = box_of(drawn[0], drawn[1])
+        left, top = box_of(*drawn)
         gap = b"\xff" * (4 * GAP)
         rows = [gap.join(rows[y][4 * left:4 * (left + PANEL[0])] for rows in drawn) for y in range(top, top + PANEL[1])]
         write_png(file, [rows], [])
@@ -127,7 +129,7 @@ def main():
         print("repair_pictures: PRISMESH_MODELS isn't set, so repairing_hatprofile.png stays as it is", file=sys.stderr)
         return
     hat = pathlib.Path(models) / "hatprofile" / "Hatprofile.k"
-    make(pictures / "repairing_hatprofile.png", hat, lift(hat, 20, (220, -26, 31), (280, 26, 33), (250, 0, 32)), "2400x1500", 5, "1,20")
+    make(pictures / "repairing_hatprofile.png", hat, lift(hat, 20, (80, -26, 31), (140, 26, 33), (110, 0, 32)), "2400x1500", 5, "1,20")
 
 
 if __name__ == "__main__":
