@@ -211,7 +211,6 @@ TEST(Unwritable, a_repair_stops_wherever_it_is_told_and_its_progress_never_goes_
   const Folder folder;
   Document document = open_half_odd(folder / "a.k");
   must_apply(document, dent(sheet_node(3, 4)));
-  must_apply(document, dent(sheet_node(11, 4)));
   const Edit repair = parse_edit(R"({"edit":"repair"})").value();
   std::vector<double> told;
   const auto listen = [&](double fraction) {
