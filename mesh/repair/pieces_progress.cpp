@@ -52,7 +52,7 @@ std::string PiecesProgress::words() {
     bad_left += piece.bad_left;
     piece.is_asked = true;
   }
-  const std::string words = "round " + std::to_string(round);
+  std::string words = "round " + std::to_string(round);
   if (bad_before_ == 0) return words;
   return words + ", " + std::to_string(bad_left) + " of " + std::to_string(bad_before_) + " bad elements left";
 }
