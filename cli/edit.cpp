@@ -1,6 +1,7 @@
 #include "mesh/document/edit.h"
 
 #include <filesystem>
+#include <optional>
 #include <ostream>
 #include <system_error>
 
@@ -74,14 +75,17 @@ Result<document::Prepared> prepare_shown(const document::Document& document, con
   return document::prepare(document, edit, bar.progress(), &clock);
 }
 
-enum class Applied : std::uint8_t { all, refused, stopped_and_kept };
+struct Applied {
+  bool is_refused = false;
+  std::optional<Error> stop;  ///< the user stopped the command at an edit that is kept; to be said once that is written
+};
 
-/// Says that the user stopped the command at an edit that is kept, with `left` edits after it.
-void say_kept(const Context& context, const WantedEdit& at, const document::EditReport& report, std::size_t left) {
+/// What to say where the user stopped the command at an edit that is kept, with `left` edits after it.
+Error stop_of(const WantedEdit& at, const document::EditReport& report, std::size_t left) {
   std::string said = report.stopped ? "stopped in the middle of this edit" : "stopped after this edit";
   said += "; what was reached is written";
   if (left > 0) said += ", without the " + (left == 1 ? std::string("edit") : counted(left, "edit")) + " after it";
-  say(context, Error{at.file, at.line, std::move(said)});
+  return {at.file, at.line, std::move(said)};
 }
 
 /// Applies the edits in order, until one is refused or the user stops; the reason is printed.
@@ -92,11 +96,11 @@ Applied apply_all(const std::vector<WantedEdit>& wanted, document::Document& doc
     Result<document::Prepared> prepared = prepare_shown(document, one.edit, context);
     if (!prepared) {
       refuse_edit(context, common, one, prepared.error());
-      return Applied::refused;
+      return {true, std::nullopt};
     }
     if (const Result<void> kept = journal.append(document, one.edit, *prepared); !kept) {
       refuse_edit(context, common, one, kept.error());
-      return Applied::refused;
+      return {true, std::nullopt};
     }
     const document::EditReport report = prepared->report;
     document::commit(document, std::move(*prepared));
@@ -104,23 +108,20 @@ Applied apply_all(const std::vector<WantedEdit>& wanted, document::Document& doc
       context.out << edit_json(report) << '\n';
     else
       print_edit(context.out, report);
-    if (context.stop() && is_kept_on_cancel(one.edit)) {
-      say_kept(context, one, report, wanted.size() - i - 1);
-      return Applied::stopped_and_kept;
-    }
+    if (context.stop() && is_kept_on_cancel(one.edit)) return {false, stop_of(one, report, wanted.size() - i - 1)};
     if (context.stop()) {
       say(context, Error{one.file, one.line, "cancelled after this edit; nothing is written"});
-      return Applied::refused;
+      return {true, std::nullopt};
     }
   }
-  return Applied::all;
+  return {};
 }
 
 /// Saves even after the user has stopped the command at an edit that is kept.
-Result<mesh::deck::SaveReport> save_applied(const document::Document& document, const std::filesystem::path& output, Applied applied,
+Result<mesh::deck::SaveReport> save_applied(const document::Document& document, const std::filesystem::path& output, const Applied& applied,
                                             const Context& context) {
   Context saving = context;
-  if (applied == Applied::stopped_and_kept) saving.interrupted = nullptr;
+  if (applied.stop) saving.interrupted = nullptr;
   return save_deck(document, output, saving);
 }
 
@@ -149,12 +150,13 @@ int edit(const EditOptions& options, const Common& common, const Context& contex
   if (options.journal)
     if (const Result<void> created = journal.create(*options.journal, *document); !created) return refuse(created.error());
   const Applied applied = apply_all(wanted, *document, journal, common, context);
-  if (applied == Applied::refused || !output_is_good(context)) return kFailed;
+  if (applied.is_refused || !output_is_good(context)) return kFailed;
   const Result<mesh::deck::SaveReport> saved = save_applied(*document, options.output, applied, context);
   if (!saved) return refuse(saved.error());
   journal.keep();
   for (const std::string& note : saved->notes) say(context, Error{options.output.string(), 0, "note: " + note});
-  return applied == Applied::all ? kDone : kFailed;
+  if (applied.stop) say(context, *applied.stop);
+  return applied.stop ? kFailed : kDone;
 }
 
 }  // namespace prismesh::cli

@@ -263,6 +263,18 @@ TEST_F(Cli, a_repair_says_in_a_pipe_how_far_it_is) {
   EXPECT_EQ(nlohmann::json::parse(out.str())["ok"], true);
 }
 
+TEST_F(Cli, a_stopped_repair_that_cannot_be_written_is_not_said_to_be) {
+  const std::string deck = write("rough.k", rough_text());
+  write("file", "no folder");
+  SteppingClock clock(60);
+  std::ostringstream out, err;
+  const std::vector<std::string> args = {"edit", deck, "--edit", kRepairAll, "-o", path("file/out.k"), "--keep-on-cancel"};
+  EXPECT_EQ(run(args, {out, err, false, &clock.interrupted, &clock}), kFailed);
+  EXPECT_THAT(out.str(), HasSubstr("stopped in round"));
+  EXPECT_THAT(err.str(), HasSubstr("file"));
+  EXPECT_THAT(err.str(), ::testing::Not(HasSubstr("what was reached is written")));
+}
+
 TEST_F(Cli, a_repair_that_is_stopped_is_written_where_that_is_asked_for) {
   const std::string deck = write("rough.k", rough_text());
   std::vector<std::vector<std::string>> ways = {{"--keep-on-cancel", "--edit", kRepairAll},
