@@ -23,9 +23,10 @@ struct Effort {
   int sweeps;                         ///< of node smoothing in a full trial
   std::size_t max_trials;             ///< full trials while no candidate is acceptable
   std::size_t max_trials_once_found;  ///< full trials once one is
+  double min_gain_at_first;           ///< per shell that a candidate changes, before smoothing: others get no trial
   bool along_lines;                   ///< a second strip pass and what follows also move nodes on feature lines
 };
-inline constexpr Effort kQuickEffort{4, 12, 4, false}, kThoroughEffort{10, 40, 12, true};
+inline constexpr Effort kQuickEffort{4, 12, 4, -1, false}, kThoroughEffort{10, 40, 12, -1.2, true};
 
 /// The accepted changes so far.
 struct ChangeHistory {
