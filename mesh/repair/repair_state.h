@@ -8,6 +8,7 @@
 #include <map>
 #include <optional>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/error.h"
@@ -31,7 +32,10 @@ inline constexpr Effort kQuickEffort{4, 12, 4, -1, false}, kThoroughEffort{10, 4
 /// The accepted changes so far.
 struct ChangeHistory {
   std::vector<std::uint8_t> in_scope;      ///< by shell, for the shells that the patch began with; later ones are in scope
-  std::vector<std::uint32_t> last_change;  ///< by shell: the number of its last change, from 1; 0 or no entry: none
+  std::vector<std::uint32_t> last_change;  ///< by shell: the number of its last change by an operation, from 1; 0 or no entry: none
+  std::vector<std::uint8_t> is_moved;      ///< by shell: relaxing moved a node of it; no entry: it didn't
+  std::vector<std::uint8_t> was_bad;       ///< by shell, for the shells that the patch began with: in scope, and warned or failed
+  std::vector<std::uint8_t> is_reshaped;   ///< by shell: it got other corners; no entry: it didn't
   std::uint32_t changes = 0;
   long triangles = 0;  ///< of the whole model
   long max_triangles = 0;
@@ -39,11 +43,20 @@ struct ChangeHistory {
   int added_triangle_pairs = 0;     ///< edges between two triangles, now less those at the start
 };
 
-/// What the trials so far have shown.
+/// What the trials so far have shown. `refused_at` of each kind: ChangeHistory::changes when every candidate there was refused.
 struct TrialRecord {
-  std::map<LocalShell, std::uint32_t> refused_at;       ///< ChangeHistory::changes when every candidate of the shell was refused
+  std::map<LocalShell, std::uint32_t> refused_at;
+  std::map<LocalShell, std::uint32_t> tidying_refused_at;
+  /// By each quad of the strip and the edge that it crosses (0 or 1); first without, then with moves along lines.
+  std::array<std::map<std::pair<LocalShell, int>, std::uint32_t>, 2> strip_refused_at;
   std::map<LocalShell, std::string_view> reason;        ///< the last reason for that
   std::array<std::size_t, kOperationCount> accepted{};  ///< by Operation
+
+  void forget_refused() {
+    refused_at.clear();
+    tidying_refused_at.clear();
+    for (auto& refused : strip_refused_at) refused.clear();
+  }
 };
 
 /// Progress over the rounds, and why the repair stopped early.
