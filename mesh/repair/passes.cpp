@@ -113,8 +113,8 @@ std::vector<Vec3> positions_in_model(const Patch& patch) {
   return positions;
 }
 
-/// Moves nodes and judges the shells about them. Nodes of shells that get a worse grade by it go back, until there is no such shell.
-/// Returns whether any node has moved.
+/// Moves nodes and judges the shells about them. Nodes of shells that get a worse grade or are folded go back, until there is no such
+/// shell. Returns whether any node has moved.
 bool move_where_none_gets_worse(const RepairContext& context, std::vector<std::pair<LocalNode, Vec3>> moves) {
   Patch& patch = context.patch;
   while (!moves.empty()) {
@@ -122,7 +122,7 @@ bool move_where_none_gets_worse(const RepairContext& context, std::vector<std::p
     judge_shells(context, patch.changed_shells());
     std::set<LocalNode> back;
     for (const auto& [shell, was] : patch.old_shells())
-      if (patch.shell(shell).state.grade() > was.state.grade())
+      if (patch.shell(shell).state.grade() > was.state.grade() || !conforms(patch, shell))
         for (const LocalNode corner : patch.shell(shell).corners) back.insert(corner);
     if (std::erase_if(moves, [&](const auto& move) { return back.contains(move.first); }) == 0) break;
     patch.take_back();
@@ -206,7 +206,7 @@ void relax_neighbourhood(const RepairContext& context, RepairState& state) {
   std::vector<std::pair<LocalNode, Vec3>> moves;
   for (std::size_t i = 0; i < relaxed->nodes.size(); ++i) moves.emplace_back(LocalNode(relaxed->nodes[i].value), relaxed->positions[i]);
   patch.begin();
-  if (!move_where_none_gets_worse(context, std::move(moves)) || adds_failures(patch) || !conforms(patch)) {
+  if (!move_where_none_gets_worse(context, std::move(moves))) {
     patch.take_back();
     state.relaxing_refused_at = state.history.changes;
   } else {
