@@ -43,14 +43,13 @@ bool is_worth_trying(const Patch& patch, const ChangeHistory& history, const std
   return refused == refused_at.end() || changed_nearby(patch, history, shell, refused->second);
 }
 
-/// Whether a strip changed since it was refused from one of its shells.
-bool is_strip_worth_trying(const Patch& patch, const RepairState& state, LocalShell shell, int edge) {
+/// Whether a strip changed since it was refused.
+bool is_strip_worth_trying(const RepairState& state, const StripCandidates& strip) {
   const auto& refused_at = state.record.strip_refused_at[state.along_lines ? 1 : 0];
-  const auto refused = refused_at.find({shell, edge});
-  if (refused == refused_at.end()) return true;
-  const std::vector<StripQuad> quads = path_of(patch, {shell, edge}).quads;
-  return std::any_of(quads.begin(), quads.end(),
-                     [&](const StripQuad& quad) { return last_change(state.history, quad.shell) > refused->second; });
+  const auto refused = refused_at.find({strip.operation, strip.quads});
+  return refused == refused_at.end() || std::any_of(strip.quads.begin(), strip.quads.end(), [&](const StripQuad& quad) {
+           return last_change(state.history, quad.shell) > refused->second;
+         });
 }
 
 /// One pass over the strips at bad shells.
@@ -60,15 +59,18 @@ bool divide_strips_once(const RepairContext& context, RepairState& state) {
   for (const LocalShell shell : bad_shells(patch, state.history, quality::Grade::warn))
     for (int edge = 0; edge < 2; ++edge) {
       if (!patch.shell(shell).is_alive || patch.shell(shell).state.grade() == quality::Grade::ok) break;
-      if (!is_strip_worth_trying(patch, state, shell, edge)) continue;
-      const std::vector<Candidate> found = strips_for(context, shell, edge);
-      if (found.empty()) continue;
+      std::vector<StripCandidates> strips = strips_for(context, shell, edge);
+      std::erase_if(strips, [&](const StripCandidates& strip) { return !is_strip_worth_trying(state, strip); });
+      if (strips.empty()) continue;
       if (!goes_on(state.progress, 0)) return false;
-      if (improve(context, state, found, shell, TrialGoal::cure))
+      std::vector<Candidate> found;
+      for (const StripCandidates& strip : strips) found.insert(found.end(), strip.candidates.begin(), strip.candidates.end());
+      if (improve(context, state, found, shell, TrialGoal::cure)) {
         better = true;
-      else
-        for (const StripQuad& quad : path_of(patch, {shell, edge}).quads)
-          state.record.strip_refused_at[state.along_lines ? 1 : 0][{quad.shell, quad.edge}] = state.history.changes;
+        continue;
+      }
+      for (StripCandidates& strip : strips)
+        state.record.strip_refused_at[state.along_lines ? 1 : 0][{strip.operation, std::move(strip.quads)}] = state.history.changes;
     }
   return better;
 }
@@ -177,7 +179,8 @@ void tidy_triangles(const RepairContext& context, RepairState& state, double don
   const Patch& patch = context.patch;
   for (std::size_t s = 0; s < patch.shell_count(); ++s) {
     const LocalShell shell(s);
-    if (!patch.shell(shell).is_alive || corner_count(patch.shell(shell).corners) != 3 || !may_be_tidied(patch, state.history, shell)) continue;
+    if (!patch.shell(shell).is_alive || corner_count(patch.shell(shell).corners) != 3 || !may_be_tidied(patch, state.history, shell))
+      continue;
     if (!is_worth_trying(patch, state.history, state.record.tidying_refused_at, shell)) continue;
     if (!goes_on(state.progress, done)) return;
     if (!improve(context, state, tidying_for(context, shell), shell, TrialGoal::tidy))

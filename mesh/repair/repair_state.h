@@ -16,6 +16,7 @@
 #include "mesh/repair/cluster_state.h"
 #include "mesh/repair/operation.h"
 #include "mesh/repair/patch.h"
+#include "mesh/repair/strips.h"
 
 namespace prismesh::mesh::repair {
 
@@ -47,8 +48,8 @@ struct ChangeHistory {
 struct TrialRecord {
   std::map<LocalShell, std::uint32_t> refused_at;
   std::map<LocalShell, std::uint32_t> tidying_refused_at;
-  /// By each quad of the strip and the edge that it crosses (0 or 1); first without, then with moves along lines.
-  std::array<std::map<std::pair<LocalShell, int>, std::uint32_t>, 2> strip_refused_at;
+  /// First without, then with moves along lines.
+  std::array<std::map<std::pair<Operation, std::vector<StripQuad>>, std::uint32_t>, 2> strip_refused_at;
   std::map<LocalShell, std::string_view> reason;        ///< the last reason for that
   std::array<std::size_t, kOperationCount> accepted{};  ///< by Operation
 

@@ -89,7 +89,7 @@ void repair_triangulated_wing(benchmark::State& state) {
   std::vector<double> edges;
   for (std::size_t s = 0; s < wing.shell_count(); ++s)
     for (std::size_t c = 0; c < 3; ++c)
-      edges.push_back((wing.position(wing.shell_nodes[s][c]) - wing.position(wing.shell_nodes[s][(c + 1) % 3])).norm());
+      edges.push_back((wing.position(wing.shell_nodes[s].node[c]) - wing.position(wing.shell_nodes[s].node[(c + 1) % 3])).norm());
   std::nth_element(edges.begin(), edges.begin() + static_cast<std::ptrdiff_t>(edges.size() / 2), edges.end());
   const double size = edges[edges.size() / 2];
   const auto judged = quality::judge_model(wing, {quality::default_criteria(), size});
