@@ -35,22 +35,17 @@ struct Outcome {
   int rank = 0;  ///< of several reasons the one of the highest rank is reported
 };
 
-/// By how much the change lowers the cost of the shells that it touches.
-double gain_now(const RepairContext& context) {
-  judge_shells(context, context.patch.changed_shells());
-  return cost_before(context.patch).total - cost_now(context.patch).total;
-}
-
-/// The gain of a candidate after little smoothing; nothing if it can't be applied, or is so bad at first that smoothing can't help.
+/// The gain of a candidate after little smoothing; nothing if it can't be applied.
 std::optional<double> preview(const RepairContext& context, const RepairState& state, const Candidate& candidate, Outcome& reason) {
   Patch& patch = context.patch;
   patch.begin();
   std::optional<double> gain;
   if (const Refusal refusal = candidate.apply()) {
     if (reason.rank < 0) reason = {0, *refusal, 0};
-  } else if (gain_now(context) > state.effort.min_gain_at_first * static_cast<double>(patch.changed_shells().size())) {
+  } else {
     smooth_nodes(context, kPreviewSweeps, state.along_lines);
-    gain = gain_now(context);
+    judge_shells(context, patch.changed_shells());
+    gain = cost_before(patch).total - cost_now(patch).total;
   }
   patch.take_back();
   return gain;
