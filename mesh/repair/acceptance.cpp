@@ -201,15 +201,18 @@ Cost cost_now(const Patch& patch) {
   return cost;
 }
 
-bool conforms(const Patch& patch) {
-  for (const LocalShell shell : patch.changed_shells()) {
-    if (!is_valid_shell(patch, shell)) return false;
-    const Corners& corners = patch.shell(shell).corners;
-    const int count = corner_count(corners);
-    for (int i = 0; i < count; ++i)
-      if (!edge_conforms(patch, corners[static_cast<std::size_t>(i)], corners[static_cast<std::size_t>((i + 1) % count)])) return false;
-  }
+bool conforms(const Patch& patch, LocalShell shell) {
+  if (!is_valid_shell(patch, shell)) return false;
+  const Corners& corners = patch.shell(shell).corners;
+  const int count = corner_count(corners);
+  for (int i = 0; i < count; ++i)
+    if (!edge_conforms(patch, corners[static_cast<std::size_t>(i)], corners[static_cast<std::size_t>((i + 1) % count)])) return false;
   return true;
+}
+
+bool conforms(const Patch& patch) {
+  const auto changed = patch.changed_shells();
+  return std::all_of(changed.begin(), changed.end(), [&](LocalShell shell) { return conforms(patch, shell); });
 }
 
 bool adds_failures(const Patch& patch) {

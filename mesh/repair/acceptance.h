@@ -24,8 +24,11 @@ struct Cost {
 Cost cost_before(const Patch& patch);  ///< of the shells as they were at Patch::begin
 Cost cost_now(const Patch& patch);
 
-/// Whether the changed mesh conforms: no shell twice or with a node twice, two shells at every edge inside a sheet, as many as before at
-/// every edge of a line, and no fold.
+/// Whether the mesh conforms at a shell: it isn't there twice and has no node twice, two shells are at each edge inside a sheet, as many as
+/// before at each edge of a line, and it doesn't fold.
+bool conforms(const Patch& patch, LocalShell shell);
+
+/// Whether the mesh conforms at every changed shell.
 bool conforms(const Patch& patch);
 
 /// Whether a shell that passed fails now, or a new one fails while not fewer shells fail than before.

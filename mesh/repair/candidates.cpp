@@ -248,8 +248,8 @@ std::vector<Candidate> splits_of(const RepairContext& context, LocalShell shell)
   return found;
 }
 
-std::vector<Candidate> strips_for(const RepairContext& context, LocalShell shell, int edge) {
-  std::vector<Candidate> found;
+std::vector<StripCandidates> strips_for(const RepairContext& context, LocalShell shell, int edge) {
+  std::vector<StripCandidates> found;
   const Corners& corners = context.patch.shell(shell).corners;
   if (corner_count(corners) != 4) return found;
   const double width = width_of(context.patch, corners, edge), size = target_size_of(context, shell);
@@ -265,7 +265,8 @@ std::vector<Candidate> strips_for(const RepairContext& context, LocalShell shell
   for (const double max_length : {kInfinite, 0.75 * size, kShort * size}) {
     const Strip strip{shell, edge, 0, max_length};
     if (width > kShort * size || !is_another(strip)) continue;
-    found.push_back({Operation::collapse, [&context, strip] { return collapse_strip(context, strip); }});
+    found.push_back(
+        {Operation::collapse, courses.back().quads, {{Operation::collapse, [&context, strip] { return collapse_strip(context, strip); }}}});
   }
   if (width < kLong * size) return found;
   std::set<int> pieces = {2};
@@ -273,11 +274,14 @@ std::vector<Candidate> strips_for(const RepairContext& context, LocalShell shell
   for (const double min_length : {0.0, size, kLong * size}) {
     const Strip strip{shell, edge, min_length, kInfinite};
     if (!is_another(strip)) continue;
+    StripCandidates divided{Operation::split, courses.back().quads, {}};
     for (const int count : pieces)
       for (const bool absorbs : {true, false}) {
         if (!absorbs && (count > 2 || !courses.back().ends_in_triangle)) continue;
-        found.push_back({Operation::split, [&context, strip, count, absorbs] { return divide_strip(context, strip, count, absorbs); }});
+        divided.candidates.push_back(
+            {Operation::split, [&context, strip, count, absorbs] { return divide_strip(context, strip, count, absorbs); }});
       }
+    found.push_back(std::move(divided));
   }
   return found;
 }

@@ -8,6 +8,7 @@
 #include "mesh/repair/context.h"
 #include "mesh/repair/operation.h"
 #include "mesh/repair/reshaping.h"
+#include "mesh/repair/strips.h"
 
 namespace prismesh::mesh::repair {
 
@@ -22,9 +23,16 @@ std::vector<Candidate> candidates_for(const RepairContext& context, LocalShell s
 /// The splits of a quad along its diagonals; first the diagonal across which it is bent more. Empty for a triangle.
 std::vector<Candidate> splits_of(const RepairContext& context, LocalShell shell);
 
-/// Candidates on the strip of quads across edge `edge` (0 or 1) of a quad and the opposite edge: to divide it if it is wide there, to
-/// remove it if it is narrow.
-std::vector<Candidate> strips_for(const RepairContext& context, LocalShell shell, int edge);
+/// Ways to divide a strip, or to remove it.
+struct StripCandidates {
+  Operation operation;
+  std::vector<StripQuad> quads;
+  std::vector<Candidate> candidates;
+};
+
+/// Candidates on strips of quads across edge `edge` (0 or 1) of a quad and the opposite edge, of several lengths: to divide them if the
+/// quad is wide there, to remove them if it is narrow.
+std::vector<StripCandidates> strips_for(const RepairContext& context, LocalShell shell, int edge);
 
 /// Candidates that may remove triangles near a triangle, or separate it from another one.
 std::vector<Candidate> tidying_for(const RepairContext& context, LocalShell shell);

@@ -125,6 +125,8 @@ Thinning try_thinning(const RepairContext& context, const RepairState& state, co
   if (!conforms(patch)) return {0, "every operation would tear or fold the mesh"};
   if (now.triangles > before.triangles) return {0, "there would be more triangles"};
   if (!stays_on_surface(context)) return {0, "every operation leaves the surface"};
+  // Where quads were split, the shells before are far from the smooth surface, so that the check above allows much.
+  if (state.history.added_triangle_pairs > 0 && !keeps_peaks(context)) return {0, "every operation leaves the surface"};
   return {10 * thinned + std::max(gain, 0.0) + 1e-6, {}};
 }
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <set>
+#include <map>
 #include <utility>
 
 #include "mesh/relax/relax.h"
@@ -36,30 +36,53 @@ bool goes_on(RoundProgress& progress, double done) {
   return reports(progress, done);
 }
 
+/// Whether something near a shell changed since all of its candidates were refused.
+bool is_worth_trying(const Patch& patch, const ChangeHistory& history, const std::map<LocalShell, std::uint32_t>& refused_at,
+                     LocalShell shell) {
+  const auto refused = refused_at.find(shell);
+  return refused == refused_at.end() || changed_nearby(patch, history, shell, refused->second);
+}
+
+/// Whether a strip changed since it was refused.
+bool is_strip_worth_trying(const RepairState& state, const StripCandidates& strip) {
+  const auto& refused_at = state.record.strip_refused_at[state.along_lines ? 1 : 0];
+  const auto refused = refused_at.find({strip.operation, strip.quads});
+  return refused == refused_at.end() || std::any_of(strip.quads.begin(), strip.quads.end(), [&](const StripQuad& quad) {
+           return last_change(state.history, quad.shell) > refused->second;
+         });
+}
+
 /// One pass over the strips at bad shells.
 bool divide_strips_once(const RepairContext& context, RepairState& state) {
   const Patch& patch = context.patch;
   bool better = false;
-  std::set<std::pair<LocalShell, int>> refused;  ///< a refused strip isn't tried again from each of its shells
   for (const LocalShell shell : bad_shells(patch, state.history, quality::Grade::warn))
     for (int edge = 0; edge < 2; ++edge) {
       if (!patch.shell(shell).is_alive || patch.shell(shell).state.grade() == quality::Grade::ok) break;
-      if (refused.contains({shell, edge})) continue;
-      const std::vector<Candidate> found = strips_for(context, shell, edge);
-      if (found.empty()) continue;
+      std::vector<StripCandidates> strips = strips_for(context, shell, edge);
+      std::erase_if(strips, [&](const StripCandidates& strip) { return !is_strip_worth_trying(state, strip); });
+      if (strips.empty()) continue;
       if (!goes_on(state.progress, 0)) return false;
-      if (improve(context, state, found, shell, TrialGoal::cure))
+      std::vector<Candidate> found;
+      for (const StripCandidates& strip : strips) found.insert(found.end(), strip.candidates.begin(), strip.candidates.end());
+      if (improve(context, state, found, shell, TrialGoal::cure)) {
         better = true;
-      else
-        for (const StripQuad& quad : path_of(patch, {shell, edge}).quads) refused.emplace(quad.shell, quad.edge);
+        continue;
+      }
+      for (StripCandidates& strip : strips)
+        state.record.strip_refused_at[state.along_lines ? 1 : 0][{strip.operation, std::move(strip.quads)}] = state.history.changes;
     }
   return better;
 }
 
-/// Whether something near a shell changed since all of its candidates were refused.
-bool is_worth_trying(const Patch& patch, const RepairState& state, LocalShell shell) {
-  const auto refused = state.record.refused_at.find(shell);
-  return refused == state.record.refused_at.end() || changed_nearby(patch, state.history, shell, refused->second);
+/// Whether an operation made or reshaped a triangle, or it has an edge in common with a shell that was bad at first.
+bool may_be_tidied(const Patch& patch, const ChangeHistory& history, LocalShell triangle) {
+  if (is_reshaped(patch, history, triangle)) return true;
+  const Corners& corners = patch.shell(triangle).corners;
+  for (std::size_t i = 0; i < 3; ++i)
+    for (const LocalShell at_edge : patch.shells_at(corners[i], corners[(i + 1) % 3]))
+      if (was_bad(history, at_edge)) return true;
+  return false;
 }
 
 /// Nodes that relaxing may move: of shells that are bad or were changed, and of those about them.
@@ -92,6 +115,28 @@ std::vector<Vec3> positions_in_model(const Patch& patch) {
   return positions;
 }
 
+/// Moves nodes and judges the shells about them. Nodes of shells that are folded, fail anew, or warn anew unless they may, go back, until
+/// there is no such shell. Returns whether any node has moved.
+bool move_where_acceptable(const RepairContext& context, std::vector<std::pair<LocalNode, Vec3>> moves, bool may_warn) {
+  Patch& patch = context.patch;
+  const auto is_worse = [&](LocalShell shell, const PatchShell& was) {
+    const quality::Grade grade = patch.shell(shell).state.grade();
+    return grade > was.state.grade() && !(may_warn && grade == quality::Grade::warn);
+  };
+  while (!moves.empty()) {
+    for (const auto& [node, place] : moves) patch.move(node, place);
+    judge_shells(context, patch.changed_shells());
+    std::set<LocalNode> back;
+    for (const auto& [shell, was] : patch.old_shells())
+      if (is_worse(shell, was) || !conforms(patch, shell))
+        for (const LocalNode corner : patch.shell(shell).corners) back.insert(corner);
+    if (std::erase_if(moves, [&](const auto& move) { return back.contains(move.first); }) == 0) break;
+    patch.take_back();
+    patch.begin();
+  }
+  return !moves.empty();
+}
+
 }  // namespace
 
 bool divide_strips(const RepairContext& context, RepairState& state) {
@@ -112,7 +157,8 @@ bool cure_shells(const RepairContext& context, RepairState& state, quality::Grad
   for (const LocalShell shell : bad) {
     if (!goes_on(state.progress, done)) break;
     done += each;
-    if (!patch.shell(shell).is_alive || patch.shell(shell).state.grade() < min_grade || !is_worth_trying(patch, state, shell)) continue;
+    if (!patch.shell(shell).is_alive || patch.shell(shell).state.grade() < min_grade) continue;
+    if (!is_worth_trying(patch, state.history, state.record.refused_at, shell)) continue;
     if (improve(context, state, candidates_for(context, shell), shell, TrialGoal::cure))
       better = true;
     else
@@ -137,9 +183,12 @@ void tidy_triangles(const RepairContext& context, RepairState& state, double don
   const Patch& patch = context.patch;
   for (std::size_t s = 0; s < patch.shell_count(); ++s) {
     const LocalShell shell(s);
-    if (!patch.shell(shell).is_alive || !is_changed(patch, state.history, shell) || corner_count(patch.shell(shell).corners) != 3) continue;
+    if (!patch.shell(shell).is_alive || corner_count(patch.shell(shell).corners) != 3 || !may_be_tidied(patch, state.history, shell))
+      continue;
+    if (!is_worth_trying(patch, state.history, state.record.tidying_refused_at, shell)) continue;
     if (!goes_on(state.progress, done)) return;
-    improve(context, state, tidying_for(context, shell), shell, TrialGoal::tidy);
+    if (!improve(context, state, tidying_for(context, shell), shell, TrialGoal::tidy))
+      state.record.tidying_refused_at[shell] = state.history.changes;
   }
 }
 
@@ -161,14 +210,15 @@ void relax_neighbourhood(const RepairContext& context, RepairState& state) {
     state.progress.stopped = relaxed.error();
     return;
   }
+  std::vector<std::pair<LocalNode, Vec3>> moves;
+  for (std::size_t i = 0; i < relaxed->nodes.size(); ++i) moves.emplace_back(LocalNode(relaxed->nodes[i].value), relaxed->positions[i]);
   patch.begin();
-  for (std::size_t i = 0; i < relaxed->nodes.size(); ++i) patch.move(LocalNode(relaxed->nodes[i].value), relaxed->positions[i]);
-  judge_shells(context, patch.changed_shells());
-  if (adds_failures(patch) || !conforms(patch)) {
+  // Where no operation helps any more, other places of the nodes let some help again, even if shells warn until then.
+  if (!move_where_acceptable(context, std::move(moves), state.effort.along_lines)) {
     patch.take_back();
     state.relaxing_refused_at = state.history.changes;
   } else {
-    keep_change(patch, state.history);
+    keep_moves(patch, state.history);
   }
 }
 

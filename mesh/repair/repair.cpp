@@ -116,8 +116,9 @@ int run_rounds(const RepairContext& context, RepairState& state) {
     if (!better && is_thorough && !split_failing_quads(context, state)) break;
     // A round that made nothing better is followed by a thorough one, which tries every shell again.
     state.effort = better || is_thorough ? kQuickEffort : kThoroughEffort;
-    if (!better) state.record.refused_at.clear();
-    relax_neighbourhood(context, state);
+    if (!better) state.record.forget_refused();
+    // After a split its triangles are joined and moved away first, while the nodes are where they were.
+    if (better || !is_thorough) relax_neighbourhood(context, state);
   }
   return rounds;
 }
@@ -198,6 +199,8 @@ Result<Repaired> repair_piece(const WholeRepair& whole, std::size_t piece, const
   Repaired repaired;
   judge_all(strict);
   const auto pairs_before = pair_edges(patch);
+  state.history.was_bad.assign(patch.shell_count(), 0);
+  for (const LocalShell bad : bad_shells(patch, state.history, quality::Grade::warn)) state.history.was_bad[bad.value] = 1;
   repaired.rounds = run_rounds(strict, state);
   if (state.progress.stopped && !is_cancelled(*state.progress.stopped)) return fail(*state.progress.stopped);
   judge_all(exact);

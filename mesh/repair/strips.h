@@ -1,6 +1,7 @@
 // Strips of quads: dividing or removing an edge inside a sheet of quads continues from quad to quad across opposite edges.
 #pragma once
 
+#include <compare>
 #include <limits>
 #include <vector>
 
@@ -31,7 +32,7 @@ Refusal collapse_strip(const RepairContext& context, const Strip& strip);
 struct StripQuad {
   LocalShell shell;
   int edge = 0;
-  bool operator==(const StripQuad&) const = default;
+  auto operator<=>(const StripQuad&) const = default;
 };
 struct StripPath {
   std::vector<StripQuad> quads;  ///< ascending by shell; empty: there is no such strip

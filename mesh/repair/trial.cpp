@@ -35,17 +35,28 @@ struct Outcome {
   int rank = 0;  ///< of several reasons the one of the highest rank is reported
 };
 
-/// The gain of a candidate after little smoothing; nothing if it can't be applied.
-std::optional<double> preview(const RepairContext& context, const RepairState& state, const Candidate& candidate, Outcome& reason) {
+/// By how much the change lowers the cost of the shells that it touches.
+double gain_now(const RepairContext& context) {
+  judge_shells(context, context.patch.changed_shells());
+  return cost_before(context.patch).total - cost_now(context.patch).total;
+}
+
+double min_gain_at_first(const RepairState& state, const Patch& patch) {
+  return state.effort.min_gain_at_first * static_cast<double>(patch.changed_shells().size());
+}
+
+/// The gain of a candidate after little smoothing; nothing if it can't be applied, or is so bad at first that smoothing can't help.
+/// Few triangles are tidied, so each of their candidates is smoothed.
+std::optional<double> preview(const RepairContext& context, const RepairState& state, const Candidate& candidate, TrialGoal goal,
+                              Outcome& reason) {
   Patch& patch = context.patch;
   patch.begin();
   std::optional<double> gain;
   if (const Refusal refusal = candidate.apply()) {
     if (reason.rank < 0) reason = {0, *refusal, 0};
-  } else {
+  } else if (goal == TrialGoal::tidy || gain_now(context) > min_gain_at_first(state, patch)) {
     smooth_nodes(context, kPreviewSweeps, state.along_lines);
-    judge_shells(context, patch.changed_shells());
-    gain = cost_before(patch).total - cost_now(patch).total;
+    gain = gain_now(context);
   }
   patch.take_back();
   return gain;
@@ -108,7 +119,7 @@ std::vector<const Candidate*> promising_of(const RepairContext& context, const R
   }
   std::vector<std::pair<double, const Candidate*>> rated;
   for (const Candidate& candidate : candidates)
-    if (const auto gain = preview(context, state, candidate, reason); gain && *gain > kMinPreviewGain)
+    if (const auto gain = preview(context, state, candidate, goal, reason); gain && *gain > kMinPreviewGain)
       rated.emplace_back(*gain, &candidate);
   std::stable_sort(rated.begin(), rated.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
   for (const auto& [gain, candidate] : rated) promising.push_back(candidate);

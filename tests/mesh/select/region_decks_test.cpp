@@ -69,7 +69,7 @@ TEST_P(RealRegions, are_the_same_whatever_the_normals_and_from_wherever_they_beg
   EXPECT_GE(disagreeing_pairs(model), GetParam().disagreeing);
   const Model other = turned_over(model);
   for (const RegionBound bound : {RegionBound::features, RegionBound::piece})
-    for (std::size_t trial = 0; trial < 12; ++trial) {
+    for (std::size_t trial = 0; trial < 4; ++trial) {
       const ShellIndex start(trial * 7919 % model.shell_count());
       const RegionOptions options{bound, 25, {}, nullptr};
       const ShellSet shells = region(model, {start}, options);
@@ -94,7 +94,7 @@ TEST_P(RealRegions, cover_the_sheets_once_and_widen_with_the_angle) {
   }
   EXPECT_LT(pieces, static_cast<int>(model.shell_count()) / 4);
   const WeldedShells welds = find_welds(model, nullptr, {});
-  for (std::size_t trial = 0; trial < 6; ++trial) {
+  for (std::size_t trial = 0; trial < 3; ++trial) {
     const ShellIndex start(trial * 7919 % model.shell_count());
     std::size_t before = 0;
     for (const double angle : {5.0, 20.0, 60.0, 180.0}) {
