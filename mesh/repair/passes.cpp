@@ -85,6 +85,29 @@ bool may_be_tidied(const Patch& patch, const ChangeHistory& history, LocalShell 
   return false;
 }
 
+bool is_to_tidy(const Patch& patch, const ChangeHistory& history, LocalShell shell) {
+  return patch.shell(shell).is_alive && corner_count(patch.shell(shell).corners) == 3 && may_be_tidied(patch, history, shell);
+}
+
+/// Tidies triangles by the best candidate of all of them, again and again: after a split, many would make the same pairs fewer, and what is
+/// left depends on their order. Each step costs the candidates of all triangles, so it is done only while these are few.
+/// Returns whether they are.
+bool tidy_best_first(const RepairContext& context, RepairState& state) {
+  constexpr std::size_t kMaxTriangles = 64;
+  for (bool better = true; better;) {
+    std::vector<LocalShell> triangles;
+    for (std::size_t s = 0; s < context.patch.shell_count(); ++s)
+      if (is_to_tidy(context.patch, state.history, LocalShell(s))) triangles.push_back(LocalShell(s));
+    if (triangles.size() > kMaxTriangles) return false;
+    if (triangles.empty() || !goes_on(state.progress, 1)) return true;
+    std::vector<Candidate> all;
+    for (const LocalShell shell : triangles)
+      for (Candidate& candidate : tidying_for(context, shell)) all.push_back(std::move(candidate));
+    better = improve(context, state, all, triangles.front(), TrialGoal::tidy);
+  }
+  return true;
+}
+
 /// Nodes that relaxing may move: of shells that are bad or were changed, and of those about them.
 NodeSet movable_nodes(const Patch& patch, const ChangeHistory& history) {
   std::vector<std::uint8_t> near(patch.node_count(), 0);
@@ -175,16 +198,16 @@ bool split_failing_quads(const RepairContext& context, RepairState& state) {
     if (!patch.shell(shell).is_alive || patch.shell(shell).state.fail == 0) continue;
     better = improve(context, state, splits_of(context, shell), shell, TrialGoal::split) || better;
   }
-  if (better) tidy_triangles(context, state, 1);
-  return better;
+  if (!better) return false;
+  if (!tidy_best_first(context, state)) tidy_triangles(context, state, 1);
+  return true;
 }
 
 void tidy_triangles(const RepairContext& context, RepairState& state, double done) {
   const Patch& patch = context.patch;
   for (std::size_t s = 0; s < patch.shell_count(); ++s) {
     const LocalShell shell(s);
-    if (!patch.shell(shell).is_alive || corner_count(patch.shell(shell).corners) != 3 || !may_be_tidied(patch, state.history, shell))
-      continue;
+    if (!is_to_tidy(patch, state.history, shell)) continue;
     if (!is_worth_trying(patch, state.history, state.record.tidying_refused_at, shell)) continue;
     if (!goes_on(state.progress, done)) return;
     if (!improve(context, state, tidying_for(context, shell), shell, TrialGoal::tidy))

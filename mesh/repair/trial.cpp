@@ -45,8 +45,8 @@ double min_gain_at_first(const RepairState& state, const Patch& patch) {
   return state.effort.min_gain_at_first * static_cast<double>(patch.changed_shells().size());
 }
 
-/// The gain of a candidate after little smoothing; nothing if it can't be applied, or is so bad at first that smoothing can't help.
-/// Few triangles are tidied, so each of their candidates is smoothed.
+/// The gain of a candidate after little smoothing; nothing if it can't be applied, or is so bad at first that smoothing can't help. A
+/// candidate that tidies triangles is always smoothed: it has to be applied before it can look better.
 std::optional<double> preview(const RepairContext& context, const RepairState& state, const Candidate& candidate, TrialGoal goal,
                               Outcome& reason) {
   Patch& patch = context.patch;
