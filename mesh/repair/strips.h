@@ -32,7 +32,7 @@ Refusal collapse_strip(const RepairContext& context, const Strip& strip);
 struct StripQuad {
   LocalShell shell;
   int edge = 0;
-  auto operator<=>(const StripQuad&) const = default;
+  auto operator<=>(const StripQuad&) const = default;  // NOLINT(modernize-use-nullptr): the check mistakes the operator
 };
 struct StripPath {
   std::vector<StripQuad> quads;  ///< ascending by shell; empty: there is no such strip
