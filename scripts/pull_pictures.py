@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Makes the documentation's pictures of a pull: docs/pictures/pull.png, an animation (APNG), and docs/pictures/kiosk.png.
+"""Makes the documentation's pictures of a pull: docs/pictures/pull.png, an animation (APNG), docs/pictures/kiosk.png, and
+docs/pictures/quality_panel.png, which shows the first error that it leaves.
 
     scripts/pull_pictures.py [FOLDER]      FOLDER: where the pictures are written; default docs/pictures
 
@@ -29,6 +30,7 @@ PULL_PIXELS = 56
 STEPS = 15
 STEP_MS, REST_MS = 110, 800
 CROP = (320, 20, 1072, 600)  # the animation's part of the screen: left, top, width, height
+PANEL_CROP = (0, 0, 1000, 860)  # the quality panel's, with the error beside it
 TIMEOUT_S = 60
 
 
@@ -106,6 +108,14 @@ class Kiosk:
         self.releases += 1
         self.wait_for(lambda line: line.startswith("drag committed"))
         self.wait_for(lambda line: line.startswith("picture "))
+
+    def first_error(self):
+        """Opens the quality panel and moves the view to the worst shell."""
+        self.xdotool("key", "j")
+        self.wait_for(lambda line: line.startswith("quality generation "))
+        self.xdotool("key", "Right")
+        self.wait_for(lambda line: line.startswith("picture "))
+        time.sleep(1)  # the view moves for 0.2 s, and a kiosk that draws by software does it in few frames
 
     def rest(self, x, y):
         """Waits until the screen shows everything that the pointer did."""
@@ -188,8 +198,8 @@ def write_png(file, frames, delays_ms):
     file.write_bytes(data + chunk(b"IEND", b""))
 
 
-def cropped(frame):
-    left, top, width, height = CROP
+def cropped(frame, crop):
+    left, top, width, height = crop
     return [row[4 * left : 4 * (left + width)] for row in frame[top : top + height]]
 
 
@@ -244,13 +254,16 @@ def main():
         kiosk = Kiosk(screen, deck)
         processes.append(kiosk.process)
         frames, delays, farthest = pull(screen, kiosk)
+        kiosk.first_error()
+        panel = screen.pixels()
     finally:
         for process in reversed(processes):
             process.terminate()
             process.wait(TIMEOUT_S)
         shutil.rmtree(home, ignore_errors=True)
     write_png(folder / "kiosk.png", [frames[farthest]], [0])
-    write_png(folder / "pull.png", [cropped(frame) for frame in frames], delays)
+    write_png(folder / "pull.png", [cropped(frame, CROP) for frame in frames], delays)
+    write_png(folder / "quality_panel.png", [cropped(panel, PANEL_CROP)], [0])
 
 
 if __name__ == "__main__":
