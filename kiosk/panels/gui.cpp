@@ -56,7 +56,7 @@ void set_style() {
   const ImVec4 ink = ImGui::ColorConvertU32ToFloat4(kInk);
   colour[ImGuiCol_Text] = ink;
   colour[ImGuiCol_TextDisabled] = ImGui::ColorConvertU32ToFloat4(kFaintInk);
-  colour[ImGuiCol_WindowBg] = ImVec4(0.13f, 0.14f, 0.15f, 0.80f);
+  colour[ImGuiCol_WindowBg] = ImGui::ColorConvertU32ToFloat4(kPanelColour);
   colour[ImGuiCol_ChildBg] = ImVec4(0, 0, 0, 0);
   colour[ImGuiCol_FrameBg] = ImVec4(1, 1, 1, 0.08f);
   colour[ImGuiCol_FrameBgHovered] = ImVec4(1, 1, 1, 0.13f);

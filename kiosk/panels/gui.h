@@ -66,6 +66,8 @@ inline constexpr unsigned kWarnColour = 0xff3cc8f0;
 inline constexpr unsigned kFailColour = 0xff4a54ee;
 inline constexpr unsigned kInformationColour = 0xffecb468;
 inline constexpr unsigned kActiveColour = 0xff7ad65a;
+/// What panels stand on: opaque, so that words keep a contrast of 4.5 at least (WCAG 2.1, 1.4.3) whatever the model's colours are.
+inline constexpr unsigned kPanelColour = 0xff211f1c;
 
 /// The grid that panels keep to, in pixels.
 inline constexpr float kGrid = 8;

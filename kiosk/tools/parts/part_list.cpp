@@ -27,7 +27,7 @@ bool lock_button(bool locked) {
   const float size = ImGui::GetTextLineHeight();
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const bool clicked = ImGui::InvisibleButton("lock", ImVec2(size, size));
-  const unsigned colour = locked ? kInk : (ImGui::IsItemHovered() ? kFaintInk : 0x60aaa6a2u);
+  const unsigned colour = locked || ImGui::IsItemHovered() ? kInk : kFaintInk;
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const float x = at.x + size * 0.25f, y = at.y + size * 0.5f, w = size * 0.5f;
   list.AddRectFilled(ImVec2(x, y), ImVec2(x + w, y + size * 0.38f), colour, 1);
@@ -68,7 +68,7 @@ void part_row(const PartRow& part, Wanted& wanted) {
   ImGui::SetCursorPosX(only_x);
   const ImVec2 only_at = ImGui::GetCursorScreenPos();
   if (ImGui::InvisibleButton("only", ImVec2(only_width, line))) wanted.push_back({std::to_string(part.id), VisibilityAction::only});
-  list.AddText(only_at, ImGui::IsItemHovered() ? kInk : 0x80aaa6a2u, "only");
+  list.AddText(only_at, ImGui::IsItemHovered() ? kInk : kFaintInk, "only");
   ImGui::SameLine();
   ImGui::SetCursorPosX(right - line);
   if (lock_button(part.locked))
@@ -89,7 +89,7 @@ void file_row(const FileRow& file, Wanted& wanted) {
     ImGui::SetCursorPosX(x);
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const bool clicked = ImGui::InvisibleButton(text, ImVec2(width, line));
-    ImGui::GetWindowDrawList()->AddText(at, ImGui::IsItemHovered() ? kInk : 0x80aaa6a2u, text);
+    ImGui::GetWindowDrawList()->AddText(at, ImGui::IsItemHovered() ? kInk : kFaintInk, text);
     return clicked;
   };
   if (word(file.hidden ? "show" : "hide", hide_x, hide_width))
