@@ -76,6 +76,7 @@ Result<OpenedDeck> finish(DeckContents found, Watch& watch) {
   if (std::optional<Error> error = first_error(found)) return fail(std::move(*error));
   deck->files = std::move(found.files);
   std::sort(deck->left_out_elements.begin(), deck->left_out_elements.end());
+  deck->left_out_elements.erase(std::unique(deck->left_out_elements.begin(), deck->left_out_elements.end()), deck->left_out_elements.end());
   deck->last_ids.resize(deck->files.size());
   find_last_ids(opened.model.node_ids, deck->node_runs, &LastIds::node, deck->last_ids);
   find_last_ids(opened.model.shell_ids, deck->shell_runs, &LastIds::shell, deck->last_ids);

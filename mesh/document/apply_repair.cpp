@@ -179,6 +179,21 @@ struct HandTargets {
   NodeSet nodes;
 };
 
+/// The shell with an id. `word`: shell, quad or tri. Errors: none, or two, has it.
+Result<ShellIndex> find_shell_by_hand(const Model& model, const std::string& word, std::int64_t id) {
+  std::vector<ShellIndex> found{model.find_shell(id)};
+  if (model.second_shells)
+    for (const ShellIndex shell : *model.second_shells)
+      if (model.shell_ids[shell.value] == id) found.push_back(shell);
+  std::erase_if(
+      found, [&](ShellIndex shell) { return !shell.valid() || (word != "shell" && model.shell(shell).is_triangle() != (word == "tri")); });
+  const std::string number = std::to_string(id);
+  if (found.empty()) return fail("", "there is no " + word + " " + number);
+  if (found.size() > 1)
+    return fail("", word + " " + number + " is two shells; \"quad:" + number + "\" and \"tri:" + number + "\" name one of them");
+  return found.front();
+}
+
 Result<HandTargets> find_hand_targets(const Model& model, const Restructure& edit) {
   const std::string what(repair::name(edit.operation));
   HandTargets targets;
@@ -186,12 +201,14 @@ Result<HandTargets> find_hand_targets(const Model& model, const Restructure& edi
     const std::size_t colon = at.find(':');
     const std::string kind = at.substr(0, colon), digits = colon == std::string::npos ? "" : at.substr(colon + 1);
     const bool is_id = !digits.empty() && digits.size() <= 18 && digits.find_first_not_of("0123456789") == std::string::npos;
-    if (!is_id || (kind != "shell" && kind != "node")) return fail("", what + ": \"" + at + "\" is neither \"shell:ID\" nor \"node:ID\"");
+    const bool is_shell = kind == "shell" || kind == "quad" || kind == "tri";
+    if (!is_id || (!is_shell && kind != "node")) return fail("", what + ": \"" + at + "\" is neither \"shell:ID\" nor \"node:ID\"");
     const std::int64_t id = std::stoll(digits);
-    const ShellIndex shell = kind == "shell" ? model.find_shell(id) : ShellIndex();
+    Result<ShellIndex> shell = ShellIndex();
+    if (is_shell && !(shell = find_shell_by_hand(model, kind, id))) return fail("", what + ": " + shell.error().message);
     const NodeIndex node = kind == "node" ? model.find_node(id) : NodeIndex();
-    if (!shell.valid() && !node.valid()) return fail("", what + ": there is no " + kind + " " + digits);
-    if (shell.valid()) targets.shells.push_back(shell);
+    if (!is_shell && !node.valid()) return fail("", what + ": there is no " + kind + " " + digits);
+    if (is_shell) targets.shells.push_back(*shell);
     if (node.valid()) targets.nodes.push_back(node);
   }
   if (targets.shells.empty() && targets.nodes.empty()) return fail("", what + ": \"at\" names no shell and no node");

@@ -22,15 +22,25 @@ struct ElementUse {
   auto operator<=>(const ElementUse&) const = default;
 };
 
+/// An element that the model leaves out at a node.
+struct HiddenUse {
+  NodeIndex node;
+  std::uint32_t element = 0;  ///< in Deck::hidden
+  auto operator<=>(const HiddenUse&) const = default;
+};
+
 struct DeckRelations {
   std::shared_ptr<const deck::Deck> deck;  ///< keeps what `names` points into
   select::Names names;
   std::vector<ElementUse> element_uses;  ///< ascending
+  std::vector<HiddenUse> hidden_uses;    ///< ascending
   Dependents dependents;
 };
 
 /// The elements other than shells at a node. Costs a binary search.
 std::span<const ElementUse> uses_at(const DeckRelations& relations, NodeIndex node);
+/// The elements that the model leaves out at a node. Costs a binary search.
+std::span<const HiddenUse> hidden_at(const DeckRelations& relations, NodeIndex node);
 /// Whether a card joins the node to others. Costs a binary search.
 bool is_joined(const DeckRelations& relations, NodeIndex node);
 

@@ -28,6 +28,16 @@ std::vector<ElementUse> find_element_uses(const Model& model) {
   return uses;
 }
 
+std::vector<HiddenUse> find_hidden_uses(const deck::HiddenElements& hidden) {
+  std::vector<HiddenUse> uses;
+  uses.reserve(hidden.nodes.size());
+  for (std::uint32_t e = 0; e < hidden.size(); ++e)
+    for (const NodeIndex node : hidden.nodes_of(e)) uses.push_back({node, e});
+  std::sort(uses.begin(), uses.end());
+  uses.erase(std::unique(uses.begin(), uses.end()), uses.end());
+  return uses;
+}
+
 /// Points into the deck.
 select::Names find_names(const deck::Deck& deck) {
   select::Names names;
@@ -44,6 +54,7 @@ std::shared_ptr<const DeckRelations> find_deck_relations(std::shared_ptr<const d
   auto relations = std::make_shared<DeckRelations>();
   relations->names = find_names(*deck);
   relations->element_uses = find_element_uses(model);
+  relations->hidden_uses = find_hidden_uses(deck->hidden);
   relations->dependents = find_dependents(*deck, model, relations->element_uses);
   relations->deck = std::move(deck);
   return relations;

@@ -129,14 +129,28 @@ class Rulebook {
       return kAllNodeRules;
     for (const ShellIndex shell : model().adjacency->shells_of(node))
       if (is_middled(shell)) return kAllNodeRules;
+    if (!hidden_at(*generation_.relations, node).empty()) return repair::kNeeded;
     return may_be_deleted(Referred::node, model().node_ids[node.value]) ? std::uint8_t{0} : std::uint8_t{repair::kNeeded};
+  }
+
+  /// Whether two of its corners belong to one element that the model leaves out: its edges there are that element's too.
+  bool meets_hidden_edge(ShellIndex shell) const {
+    if (generation_.relations->hidden_uses.empty()) return false;
+    const ShellNodes& nodes = model().shell(shell);
+    std::vector<std::uint32_t> met;
+    for (int c = 0; c < nodes.corners(); ++c)
+      for (const HiddenUse& use : hidden_at(*generation_.relations, nodes.node[static_cast<std::size_t>(c)])) {
+        if (std::find(met.begin(), met.end(), use.element) != met.end()) return true;
+        met.push_back(use.element);
+      }
+    return false;
   }
 
   std::uint8_t find_shell(ShellIndex shell) {
     if (shell.value >= model().shell_count()) return 0;
     if (const PartIndex part = model().shell_parts[shell.value]; part.valid() && (*generation_.parts)[part.value].locked)
       return kAllShellRules;
-    if (is_middled(shell) || contains(welded_shells_, shell)) return kAllShellRules;
+    if (is_middled(shell) || contains(welded_shells_, shell) || meets_hidden_edge(shell)) return kAllShellRules;
     if (!deck_.shell_runs.empty() && deck_.is_held(deck_.run_of(deck_ancestor(model(), shell)).file)) return kAllShellRules;
     const bool lasts = contains(tied_shells_, shell) || !may_be_deleted(Referred::shell, model().shell_ids[shell.value]);
     return static_cast<std::uint8_t>((lasts ? repair::kLasting : 0) | (may_be_divided(shell) ? 0 : repair::kIndivisible) |

@@ -45,6 +45,7 @@ std::string_view why_held(std::uint8_t hold) {
   if ((hold & kHeldByParameter) != 0) return "has coordinates given by a parameter";
   if ((hold & kHeldByInclude) != 0) return "stands in an include that is used more than once or can't be transformed back";
   if ((hold & kHeldByFrame) != 0) return "spans a coordinate system that other nodes stand in, or stands in one that can't be worked out";
+  if ((hold & kHeldByRepeat) != 0) return "has two cards, and moving it would change only one of them";
   if ((hold & kHeldByMaking) != 0) return "has no card of its own: one card makes it and others";
   return "belongs to an element that also names a node that isn't defined";
 }

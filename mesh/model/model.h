@@ -80,6 +80,7 @@ enum NodeHold : std::uint8_t {
   kHeldByMissing = 4,    ///< an element at it is left out, since another of the element's nodes isn't defined
   kHeldByFrame = 8,      ///< it defines a coordinate system that other nodes use, or its own system can't be computed
   kHeldByMaking = 16,    ///< it has no card: a card that generates many nodes made it (replication, generation)
+  kHeldByRepeat = 32,    ///< it has two cards: its id is defined again
   kRemoved = 128,        ///< it was removed; its entry stays so that indices never change
 };
 /// Why a node with one of these bits can't be moved, as a predicate: "has coordinates given by a parameter".
@@ -101,6 +102,9 @@ struct Model {
   std::shared_ptr<const std::vector<Part>> parts;                                ///< ascending by id
   std::shared_ptr<const IdIndex> node_index;                                     ///< deck's id -> NodeIndex value
   std::shared_ptr<const IdIndex> shell_index;
+  /// Shells whose id an earlier shell has, ascending by id: a quad and a triangle where the format numbers them apart. They aren't in
+  /// shell_index. Null: none.
+  std::shared_ptr<const std::vector<ShellIndex>> second_shells;
   std::shared_ptr<const Adjacency>
       adjacency;  ///< of the shells; built by build_adjacency; null after a topology change until it is built again
   std::shared_ptr<const TopologyChange> topology_change;  ///< what was added and removed since the deck was opened; null: nothing

@@ -50,6 +50,9 @@ enum class ReferenceRole : std::uint8_t {
   single,   ///< this one alone: a constraint, a load, a weld, a history, a property of it
 };
 
+/// Which shells a card can name by their numbers, in formats that number quads and triangles apart.
+enum class ShellKind : std::uint8_t { any, quads, triangles };
+
 /// A card, or a set of cards under one keyword, that names entities.
 struct Referrer {
   std::string keyword;       ///< as in the deck: "SET_NODE_LIST", "SPC1"
@@ -64,6 +67,7 @@ struct Referrer {
   std::optional<Referred> defines{};
   /// Cards with the same keyword, id and (non-empty) group are one set. Empty: the card is a set by itself.
   std::string group{};
+  ShellKind shells = ShellKind::any;
 };
 
 bool same_set(const Referrer& a, const Referrer& b);  ///< of cards of one group; true as well if they are the same card

@@ -128,7 +128,9 @@ class Evaluator {
   Result<void> mark_item(const Item& item, Marks& marks, std::uint8_t value) {
     const ItemClass item_class = item.item_class == ItemClass::in_hand ? class_of(marking_.kind()) : item.item_class;
     if (is_set(item_class)) return mark_sets(item, marks, value);
-    if (item_class != ItemClass::file) of_surfaces_ = of_surfaces_ && (item_class == ItemClass::shell || item_class == ItemClass::part);
+    if (item_class != ItemClass::file)
+      of_surfaces_ = of_surfaces_ && (item_class == ItemClass::shell || item_class == ItemClass::quad || item_class == ItemClass::tri ||
+                                      item_class == ItemClass::part);
     if (item_class == ItemClass::file) return mark_file(item, marks, value);
     if (item.by == Item::By::name) return mark_parts_called(item, marks, value);
     if (block_class(item_class) && marking_.kind() == EntityKind::element)
@@ -298,7 +300,8 @@ class Evaluator {
     const std::uint8_t value = member.takes_away ? 0 : 1;
     const ItemClass entity = class_of(member.referred);
     if (entity != ItemClass::in_hand) {
-      marking_.mark_ids(marks, entity, {member.first, member.last, member.step}, value);
+      const ShellKind shells = names_.references->referrers()[member.referrer].shells;
+      marking_.mark_ids(marks, entity, {member.first, member.last, member.step}, value, shells);
       return;
     }
     for (const ItemClass each : {ItemClass::shell, ItemClass::beam, ItemClass::solid, ItemClass::tshell, ItemClass::discrete,

@@ -61,6 +61,18 @@ Marks Marking::everything() const {
   return marks;
 }
 
+/// The ids of the shells with so many corners; their indices go to shells_.
+std::vector<std::int64_t> Marking::ids_with_corners(ItemClass entity) {
+  std::vector<std::int64_t> ids;
+  std::vector<std::uint32_t>& shells = shells_[static_cast<std::size_t>(entity)];
+  each_shell([&](std::size_t shell, PartIndex) {
+    if (model_.shell(ShellIndex(shell)).is_triangle() != (entity == ItemClass::tri)) return;
+    ids.push_back(model_.shell_ids[shell]);
+    shells.push_back(static_cast<std::uint32_t>(shell));
+  });
+  return ids;
+}
+
 /// Classes without an index in the model get one here, once.
 const IdIndex& Marking::ids_of(ItemClass entity) {
   if (entity == ItemClass::node) return *model_.node_index;
@@ -68,7 +80,9 @@ const IdIndex& Marking::ids_of(ItemClass entity) {
   std::unique_ptr<IdIndex>& index = indices_[static_cast<std::size_t>(entity)];
   if (index) return *index;
   std::vector<std::int64_t> ids;
-  if (const auto element_class = block_class(entity)) {
+  if (entity == ItemClass::quad || entity == ItemClass::tri) {
+    ids = ids_with_corners(entity);
+  } else if (const auto element_class = block_class(entity)) {
     if (const auto& block = model_.elements[static_cast<std::size_t>(*element_class)]) ids = block->id;
   } else {
     for (const Part& part : *model_.parts) ids.push_back(part.id);
@@ -77,15 +91,43 @@ const IdIndex& Marking::ids_of(ItemClass entity) {
   return *index;
 }
 
-bool Marking::mark_ids(Marks& marks, ItemClass entity, const SteppedIdRange& range, std::uint8_t value) {
+bool Marking::mark_ids(Marks& marks, ItemClass entity, const SteppedIdRange& range, std::uint8_t value, ShellKind of_shared) {
+  if (entity == ItemClass::shell && model_.second_shells) return mark_shell_ids(marks, range, value, of_shared);
   const IdIndex& ids = ids_of(entity);
+  const bool by_corners = entity == ItemClass::quad || entity == ItemClass::tri;
   bool found = false;
   for (std::size_t rank = ids.lower_bound(range.first); rank < ids.size(); ++rank) {
     const auto [id, index] = ids.at(rank);
     if (id > range.last) break;
     if (range.step > 1 && (id - range.first) % range.step != 0) continue;
     found = true;
-    mark(marks, entity, index, value);
+    if (by_corners)
+      mark(marks, ItemClass::shell, shells_[static_cast<std::size_t>(entity)][index], value);
+    else
+      mark(marks, entity, index, value);
+  }
+  return found;
+}
+
+/// Where two shells may have one id.
+bool Marking::mark_shell_ids(Marks& marks, const SteppedIdRange& range, std::uint8_t value, ShellKind of_shared) {
+  const std::vector<ShellIndex>& second = *model_.second_shells;
+  const IdIndex& ids = *model_.shell_index;
+  auto other = std::lower_bound(second.begin(), second.end(), range.first,
+                                [&](ShellIndex shell, std::int64_t id) { return model_.shell_ids[shell.value] < id; });
+  bool found = false;
+  for (std::size_t rank = ids.lower_bound(range.first); rank < ids.size(); ++rank) {
+    const auto [id, index] = ids.at(rank);
+    if (id > range.last) break;
+    std::vector<ShellIndex> shells{ShellIndex(index)};
+    for (; other != second.end() && model_.shell_ids[other->value] == id; ++other) shells.push_back(*other);
+    if (range.step > 1 && (id - range.first) % range.step != 0) continue;
+    found = true;
+    for (const ShellIndex shell : shells) {
+      const bool is_triangle = model_.shell(shell).is_triangle();
+      if (shells.size() > 1 && of_shared != ShellKind::any && is_triangle != (of_shared == ShellKind::triangles)) continue;
+      mark(marks, ItemClass::shell, shell.value, value);
+    }
   }
   return found;
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "mesh/model/model.h"
+#include "mesh/model/references.h"
 #include "mesh/select/chosen.h"
 #include "mesh/select/parse.h"
 
@@ -37,8 +38,9 @@ class Marking {
   const IdIndex& ids_of(ItemClass entity);
   /// Marks the entities of the kind that belong to an entity of any class: of a shell its nodes, of a node the parts around it, ...
   void mark(Marks& marks, ItemClass entity, std::uint32_t index, std::uint8_t value);
-  /// Marks the entities with ids of the range. False: there are none.
-  bool mark_ids(Marks& marks, ItemClass entity, const SteppedIdRange& range, std::uint8_t value);
+  /// Marks the entities with ids of the range. False: there are none. `of_shared`: which shell an id stands for that a quad and a triangle
+  /// have; any: both.
+  bool mark_ids(Marks& marks, ItemClass entity, const SteppedIdRange& range, std::uint8_t value, ShellKind of_shared = ShellKind::any);
   Chosen chosen(const Marks& marks) const;
 
  private:
@@ -51,9 +53,13 @@ class Marking {
   void mark_part_blocks(PartIndex part, Marks& marks, std::uint8_t value) const;
   std::span<const std::uint32_t> shells_of(PartIndex part);
 
+  bool mark_shell_ids(Marks& marks, const SteppedIdRange& range, std::uint8_t value, ShellKind of_shared);
+  std::vector<std::int64_t> ids_with_corners(ItemClass entity);
+
   const Model& model_;
   EntityKind kind_;
   std::array<std::unique_ptr<IdIndex>, kItemClassCount> indices_;
+  std::array<std::vector<std::uint32_t>, kItemClassCount> shells_;  ///< of quad and tri: the shell of each entry of the index
   std::vector<std::uint32_t> part_first_;
   std::vector<std::uint32_t> part_shells_;
 };

@@ -20,10 +20,12 @@ struct ClassName {
   std::string_view name;
   ItemClass item_class;
 };
-constexpr std::array<ClassName, 21> kClassNames{{{"node", ItemClass::node},
+constexpr std::array<ClassName, 23> kClassNames{{{"node", ItemClass::node},
                                                  {"part", ItemClass::part},
                                                  {"shell", ItemClass::shell},
                                                  {"element", ItemClass::shell},
+                                                 {"quad", ItemClass::quad},
+                                                 {"tri", ItemClass::tri},
                                                  {"beam", ItemClass::beam},
                                                  {"solid", ItemClass::solid},
                                                  {"tshell", ItemClass::tshell},

@@ -17,6 +17,8 @@ enum class ItemClass : std::uint8_t {
   node,
   part,
   shell,
+  quad,  ///< a shell with four corners
+  tri,   ///< a shell with three
   beam,
   solid,
   tshell,
@@ -36,7 +38,7 @@ enum class ItemClass : std::uint8_t {
   element_set,
   file
 };
-inline constexpr int kItemClassCount = 22;
+inline constexpr int kItemClassCount = 24;
 std::string_view name(ItemClass item_class);  ///< "node", "part_set", ...
 constexpr bool is_set(ItemClass item_class) { return item_class >= ItemClass::set && item_class <= ItemClass::element_set; }
 

@@ -147,6 +147,7 @@ class PieceReader {
   void leave_out(const char* why, std::size_t offset) {
     out_.note(why, offset, numbers_[0]);
     count(*type_, out_.left_out, 1);
+    out_.hide(type_->element_class, offset, numbers_[0], std::span(numbers_).subspan(1));
   }
 
   void add_element(std::size_t offset) {

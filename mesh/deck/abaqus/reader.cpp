@@ -61,6 +61,11 @@ void shift_ids(PieceCards& cards, std::int64_t by) {
     shift(elements.id);
     shift(elements.nodes);
   }
+  for (RawHiddenElement& element : cards.hidden) {
+    if (element.id > 0) element.id += by;
+    for (std::int64_t& node : element.nodes)
+      if (node > 0) node += by;
+  }
 }
 
 /// Marks runs whose text must not be changed: its ids aren't the model's, or it stands for several places.

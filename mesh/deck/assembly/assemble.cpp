@@ -53,6 +53,8 @@ void put_nodes(AssembledNodes nodes, Model& model, Deck& deck) {
 
 void put_shells(AssembledShells shells, Model& model, Deck& deck) {
   model.shell_index = std::move(shells.index);
+  model.second_shells = std::move(shells.second);
+  deck.shared_shell_ids = model.shell_index->duplicates();
   model.shell_ids = std::move(shells.ids);
   model.shell_nodes = std::move(shells.nodes);
   model.shell_parts = std::move(shells.parts);
@@ -75,11 +77,36 @@ void settle_unread_nodes(std::span<PieceCards> cards, std::vector<std::int64_t> 
     }
 }
 
+/// Warns of a quad and a triangle with one number.
+void note_shared_ids(const Model& model, const Deck& deck, Warnings& warnings) {
+  if (!model.second_shells) return;
+  for (const ShellIndex shell : *model.second_shells) {
+    const std::string id = std::to_string(model.shell_ids[shell.value]);
+    warnings.note("shared-shell-number", deck.run_of(shell).file, deck.shell_line[shell.value],
+                  "two shells have the number " + id + "; quad:" + id + " and tri:" + id +
+                      " name one of them. Such shells can be moved, but not divided or removed");
+  }
+}
+
+/// The elements that a reader has found, but couldn't pass on.
+void hide_unusable(std::span<const PieceCards> cards, const IdLookup& lookup, HiddenElements& hidden) {
+  std::vector<NodeIndex> nodes;
+  for (const PieceCards& piece : cards)
+    for (const RawHiddenElement& element : piece.hidden) {
+      nodes.clear();
+      for (const std::int64_t node : element.nodes)
+        if (node > 0) nodes.push_back(lookup.node(node));
+      hide({element.element_class, element.id, piece.file, element.offset}, nodes, hidden);
+    }
+}
+
 void put_left_out(LeftOutElements left_out, Model& model, Deck& deck) {
   deck.left_out_cards += left_out.counts;
   for (const NodeIndex node : left_out.nodes)
     model.node_holds.set(node.value, static_cast<std::uint8_t>(model.node_holds[node.value] | kHeldByMissing));
   deck.left_out_elements = std::move(left_out.ids);
+  for (const HiddenElements::Card& card : left_out.hidden.cards) deck.left_out_elements.push_back(card.id);
+  deck.hidden = std::move(left_out.hidden);
 }
 
 }  // namespace
@@ -97,7 +124,9 @@ Model assemble(std::span<PieceCards> cards, std::vector<Part> parts, Deck& deck,
   const IdLookup lookup{*model.node_index, assembled_parts.index};
   LeftOutElements left_out;
   put_shells(assemble_shells(cards, lookup, left_out, warnings), model, deck);
+  note_shared_ids(model, deck, warnings);
   model.elements = assemble_elements(cards, lookup, left_out, warnings);
+  hide_unusable(cards, lookup, left_out.hidden);
   settle_unread_nodes(cards, std::move(left_out.undefined_nodes), warnings);
   put_left_out(std::move(left_out), model, deck);
   return model;

@@ -38,11 +38,15 @@ std::optional<std::int64_t> find_nodes(const RawElements& from, std::size_t e, c
   return std::nullopt;
 }
 
-void leave_out(const RawElements& from, std::size_t e, ElementClass element_class, const IdLookup& lookup, LeftOutElements& left_out) {
+void leave_out(const RawElements& from, std::size_t e, std::uint32_t file, ElementClass element_class, const IdLookup& lookup,
+               LeftOutElements& left_out) {
   ++left_out.counts.of(element_class);
   left_out.ids.push_back(from.id[e]);
+  std::vector<NodeIndex> nodes;
   for (std::uint32_t n = from.first_node[e]; n < from.first_node[e + 1]; ++n)
-    if (const NodeIndex node = lookup.node(from.nodes[n]); node.valid()) left_out.nodes.push_back(node);
+    if (const NodeIndex node = lookup.node(from.nodes[n]); node.valid()) nodes.push_back(node);
+  left_out.nodes.insert(left_out.nodes.end(), nodes.begin(), nodes.end());
+  hide({element_class, from.id[e], file, from.offset[e]}, nodes, left_out.hidden);
 }
 
 PlacedElements join_elements(std::span<PieceCards> cards, ElementClass element_class, const IdLookup& lookup, LeftOutElements& left_out,
@@ -55,7 +59,7 @@ PlacedElements join_elements(std::span<PieceCards> cards, ElementClass element_c
     for (std::size_t e = 0; e < from.id.size(); ++e) {
       if (const std::optional<std::int64_t> undefined = find_nodes(from, e, lookup, nodes)) {
         note_undefined_node(warnings, {name(element_class), from.id[e], *undefined, piece.file, from.offset[e]});
-        leave_out(from, e, element_class, lookup, left_out);
+        leave_out(from, e, piece.file, element_class, lookup, left_out);
         if (is_mesh) left_out.undefined_nodes.push_back(*undefined);
         continue;
       }
@@ -71,8 +75,10 @@ PlacedElements join_elements(std::span<PieceCards> cards, ElementClass element_c
   return out;
 }
 
-/// Masses of parts and sets, for one, are numbered by themselves. Other classes have one numbering.
-bool may_have_numberings(ElementClass element_class) { return element_class == ElementClass::mass || element_class == ElementClass::other; }
+/// Masses of parts and sets, for one, are numbered by themselves, and Radioss's trusses and beams. Other classes have one numbering.
+bool may_have_numberings(ElementClass element_class) {
+  return element_class == ElementClass::mass || element_class == ElementClass::other || element_class == ElementClass::beam;
+}
 
 /// For each element whether an earlier one has its id.
 std::vector<std::uint8_t> find_repeated(const PlacedElements& elements, ElementClass element_class) {
@@ -100,6 +106,8 @@ ElementBlock without_duplicates(PlacedElements elements, ElementClass element_cl
       warnings.note("duplicate-element", elements.places[e].file, elements.places[e].offset,
                     std::string(element_class == ElementClass::other ? "element" : name(element_class)) + " " +
                         std::to_string(block.id[e]) + " is defined again; its first definition counts");
+      hide({element_class, block.id[e], elements.places[e].file, elements.places[e].offset},
+           {block.nodes.data() + block.first_node[e], block.nodes.data() + block.first_node[e + 1]}, left_out.hidden);
       continue;
     }
     kept.id.push_back(block.id[e]);

@@ -1,5 +1,6 @@
 #include "mesh/deck/assembly/assemble_nodes.h"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -32,6 +33,8 @@ void drop_duplicate_nodes(std::span<PieceCards> cards, const IdIndex& index, con
     std::vector<std::uint8_t> keep(piece.node_id.size());
     for (std::size_t i = 0; i < keep.size(); ++i) {
       keep[i] = index.find(piece.node_id[i]) == starts[p] + i;
+      if (keep[i] && std::binary_search(index.duplicates().begin(), index.duplicates().end(), piece.node_id[i]))
+        piece.holds.emplace_back(static_cast<std::uint32_t>(i), kHeldByRepeat);
       if (!keep[i])
         warnings.note("duplicate-node", piece.file, piece.node_offset[i],
                       "node " + std::to_string(piece.node_id[i]) + " is defined again; its first definition counts");

@@ -1,6 +1,8 @@
 #include "mesh/deck/assembly/assemble_shells.h"
 
 #include <algorithm>
+#include <iterator>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -72,12 +74,28 @@ std::vector<std::uint8_t> shells_with_nodes(const PieceCards& cards, const std::
   return keep;
 }
 
+void hide_shells(const PieceCards& cards, const std::vector<ShellNodes>& corners, const std::vector<std::uint8_t>& keep,
+                 const IdLookup& lookup, LeftOutElements& left_out) {
+  const RawShells& shells = cards.shells;
+  std::vector<NodeIndex> nodes;
+  auto midside = shells.midside.begin();
+  for (std::size_t i = 0; i < keep.size(); ++i) {
+    if (keep[i]) continue;
+    nodes.assign(corners[i].node.begin(), corners[i].node.end());
+    while (midside != shells.midside.end() && midside->first < i) ++midside;
+    if (midside != shells.midside.end() && midside->first == i)
+      for (const std::int64_t node : midside->second) nodes.push_back(lookup.node(node));
+    hide({ElementClass::shell, shells.id[i], cards.file, shells.offset[i]}, nodes, left_out.hidden);
+  }
+}
+
 void drop_undefined_shells(PieceCards& cards, std::vector<ShellNodes>& corners, const IdLookup& lookup, LeftOutElements& left_out,
                            Warnings& warnings) {
   RawShells& shells = cards.shells;
   const std::vector<std::uint8_t> keep = shells_with_nodes(cards, corners, lookup, left_out, warnings);
   if (keep.empty()) return;
   count_left_out(shells, keep, left_out.counts);
+  hide_shells(cards, corners, keep, lookup, left_out);
   const auto leave_node = [&](NodeIndex node) {
     if (node.valid()) left_out.nodes.push_back(node);
   };
@@ -92,18 +110,51 @@ void drop_undefined_shells(PieceCards& cards, std::vector<ShellNodes>& corners, 
   keep_shells(shells, corners, keep);
 }
 
-void drop_duplicate_shells(PieceCards& cards, const IdIndex& index, std::size_t start, std::vector<ShellNodes>& corners,
-                           LeftOutElements& left_out, Warnings& warnings) {
+/// Shells whose ids other shells have too, by numbering: which of them count.
+class SharedIds {
+ public:
+  explicit SharedIds(const IdIndex& index) : index_(index) {}
+  /// True for the first shell of a numbering that has the id. `at`: of the shell among all. To be asked in the deck's order.
+  bool counts(std::int64_t id, std::uint8_t numbering, std::size_t at) {
+    if (index_.find(id) == at) {
+      if (is_shared(id)) taken_.emplace(id, numbering);
+      return true;
+    }
+    return taken_.emplace(id, numbering).second;
+  }
+
+ private:
+  bool is_shared(std::int64_t id) const { return std::binary_search(index_.duplicates().begin(), index_.duplicates().end(), id); }
+
+  const IdIndex& index_;
+  std::set<std::pair<std::int64_t, std::uint8_t>> taken_;
+};
+
+void drop_duplicate_shells(PieceCards& cards, SharedIds& shared, std::size_t start, const IdLookup& lookup,
+                           std::vector<ShellNodes>& corners, LeftOutElements& left_out, Warnings& warnings) {
   RawShells& shells = cards.shells;
   std::vector<std::uint8_t> keep(shells.id.size());
+  auto run = shells.runs.begin();
   for (std::size_t i = 0; i < keep.size(); ++i) {
-    keep[i] = index.find(shells.id[i]) == start + i;
+    while (run != shells.runs.end() && std::next(run) != shells.runs.end() && std::next(run)->first <= i) ++run;
+    keep[i] = shared.counts(shells.id[i], run == shells.runs.end() ? std::uint8_t{0} : run->numbering, start + i);
     if (!keep[i])
       warnings.note("duplicate-element", cards.file, shells.offset[i],
                     "shell " + std::to_string(shells.id[i]) + " is defined again; its first definition counts");
   }
+  hide_shells(cards, corners, keep, lookup, left_out);
   count_left_out(shells, keep, left_out.counts);
   keep_shells(shells, corners, keep);
+}
+
+/// The shells whose id an earlier shell has, ascending by id; null: none.
+std::shared_ptr<const std::vector<ShellIndex>> second_shells(const IdIndex& index, const ChunkedArray<std::int64_t>& ids) {
+  if (index.duplicates().empty()) return nullptr;
+  auto second = std::make_shared<std::vector<ShellIndex>>();
+  for (std::size_t i = 0; i < ids.size(); ++i)
+    if (index.find(ids[i]) != i) second->push_back(ShellIndex(i));
+  std::stable_sort(second->begin(), second->end(), [&](ShellIndex a, ShellIndex b) { return ids[a.value] < ids[b.value]; });
+  return second;
 }
 
 ChunkedArray<float> gather_thickness(const std::vector<std::size_t>& starts, std::span<const PieceCards> cards) {
@@ -139,12 +190,14 @@ AssembledShells assemble_shells(std::span<PieceCards> cards, const IdLookup& loo
   std::vector<std::size_t> starts = shell_starts(cards);
   shells.index = index_of(starts, cards, kShellIds);
   if (!shells.index->duplicates().empty()) {
+    SharedIds shared(*shells.index);
     for (std::size_t p = 0; p < cards.size(); ++p)
-      drop_duplicate_shells(cards[p], *shells.index, starts[p], corners[p], left_out, warnings);
+      drop_duplicate_shells(cards[p], shared, starts[p], lookup, corners[p], left_out, warnings);
     starts = shell_starts(cards);
     shells.index = index_of(starts, cards, kShellIds);
   }
   shells.ids = gather_field<std::int64_t>(starts, cards, kShellIds);
+  shells.second = second_shells(*shells.index, shells.ids);
   shells.nodes = gather<ShellNodes>(starts, [&](std::size_t piece, std::size_t first, std::size_t count, std::span<ShellNodes> out) {
     std::copy_n(corners[piece].begin() + static_cast<std::ptrdiff_t>(first), count, out.begin());
   });

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -38,13 +39,17 @@ struct IdLookup {
   }
 };
 
-/// Elements that aren't in the model because a node of theirs isn't defined, by id.
+/// Elements that aren't in the model.
 struct LeftOutElements {
-  std::vector<std::int64_t> ids;
-  std::vector<NodeIndex> nodes;  ///< those of their nodes that are defined: moved, they would deform an element that nobody sees
+  HiddenElements hidden;
+  std::vector<std::int64_t> ids;  ///< of elements with a node that isn't defined
+  std::vector<NodeIndex> nodes;   ///< those of their nodes that are defined: moved, they would deform an element that nobody sees
   std::vector<std::int64_t> undefined_nodes;  ///< ids; of shells, beams, solids and thick shells
   ElementCounts counts;                       ///< and of elements whose ids are defined again
 };
+
+/// Adds an element to the hidden ones, with those of its nodes that are defined.
+void hide(const HiddenElements::Card& card, std::span<const NodeIndex> nodes, HiddenElements& hidden);
 
 /// A node that the card of an element names and nobody defines.
 struct UndefinedNode {
@@ -65,6 +70,7 @@ struct AssembledShells {
   std::vector<CardRun> runs;          ///< as Deck::shell_runs
   std::vector<std::uint64_t> offset;  ///< as Deck::shell_line
   std::shared_ptr<const IdIndex> index;
+  std::shared_ptr<const std::vector<ShellIndex>> second;  ///< as Model::second_shells
 };
 
 }  // namespace prismesh::mesh::deck

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -39,6 +40,16 @@ struct PieceRun {
   /// Index into the deck's frames and id_offsets. A format that knows its frames only later may store another number here and replace it
   /// by the index before `assemble`.
   std::uint32_t frame = 0;
+  /// Shells of different numberings may have the same ids.
+  std::uint8_t numbering = 0;
+};
+
+/// An element that isn't among the piece's shells and elements, though it has a card.
+struct RawHiddenElement {
+  ElementClass element_class = ElementClass::other;
+  std::int64_t id = 0;
+  std::size_t offset = 0;
+  std::vector<std::int64_t> nodes;  ///< ids; those below 1 are none
 };
 
 struct RawShells {
@@ -81,6 +92,7 @@ struct PieceCards {
   std::vector<PieceRun> node_runs;
   RawShells shells;
   std::array<RawElements, kElementClassCount> elements;  ///< by ElementClass; [shell] stays empty
+  std::vector<RawHiddenElement> hidden;
   ElementCounts counts;
   ElementCounts left_out;                                  ///< of these, cards that are in no array here
   std::vector<std::pair<std::string, std::size_t>> kinds;  ///< element cards by the deck's own keyword
@@ -91,7 +103,9 @@ struct PieceCards {
 
   /// Begins a run: the nodes or shells that are added from here on have this style and frame.
   void begin_nodes(std::uint16_t style, std::uint32_t frame);
-  void begin_shells(std::uint16_t style, std::uint32_t frame = 0);
+  void begin_shells(std::uint16_t style, std::uint32_t frame = 0, std::uint8_t numbering = 0);
+  /// Adds an element that is left out. `nodes`: ids; those below 1 are none.
+  void hide(ElementClass element_class, std::size_t offset, std::int64_t id, std::span<const std::int64_t> nodes);
   void note(std::string_view kind, std::size_t offset, std::int64_t id);
   void count_kind(std::string_view kind, std::size_t count = 1);
 };

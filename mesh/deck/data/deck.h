@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -82,6 +83,23 @@ struct CardRun {
   bool operator==(const CardRun&) const = default;
 };
 
+/// Elements whose cards are in the deck, but which the model leaves out: a node of theirs isn't defined, or their id is defined before. The
+/// solver may use them, so edits keep their nodes and their edges.
+struct HiddenElements {
+  struct Card {
+    ElementClass element_class = ElementClass::other;
+    std::int64_t id = 0;
+    std::uint32_t file = 0;    ///< index into files
+    std::uint64_t offset = 0;  ///< of the card
+  };
+  std::vector<Card> cards;
+  std::vector<std::uint32_t> first_node{0};  ///< the nodes of element e are nodes[first_node[e] .. first_node[e+1])
+  std::vector<NodeIndex> nodes;              ///< those that are defined
+
+  std::size_t size() const { return cards.size(); }
+  std::span<const NodeIndex> nodes_of(std::size_t e) const { return {nodes.data() + first_node[e], nodes.data() + first_node[e + 1]}; }
+};
+
 /// The largest ids of a file's nodes and shells, as in the model; 0: it has none.
 struct LastIds {
   std::int64_t node = 0;
@@ -103,6 +121,8 @@ struct Deck {
   Hash128 content;                              ///< of all files' bytes and relative names
   std::vector<LastIds> last_ids;                ///< by file
   std::vector<std::int64_t> left_out_elements;  ///< ids of element cards that aren't in the model, ascending; new elements can't have them
+  HiddenElements hidden;                        ///< what element cards that aren't in the model have of its nodes
+  std::vector<std::int64_t> shared_shell_ids;   ///< ids that two shells of the model have (Model::second_shells), ascending
   std::vector<std::uint32_t> held_files;        ///< files that stand for several places, ascending; their cards must not change
   ElementCounts element_cards;
   ElementCounts left_out_cards;  ///< of these, cards that the model leaves out: undefined or missing nodes, an id that is defined again
@@ -114,6 +134,7 @@ struct Deck {
   std::vector<std::string> missing_files;  ///< includes that weren't found, as written
   std::shared_ptr<OnDisk> on_disk;         ///< never null after opening
 
+  bool shares_id(std::int64_t shell) const { return std::binary_search(shared_shell_ids.begin(), shared_shell_ids.end(), shell); }
   bool is_held(std::uint32_t file) const { return std::binary_search(held_files.begin(), held_files.end(), file); }
   const CardRun& run_of(NodeIndex node) const;
   const CardRun& run_of(ShellIndex shell) const;

@@ -65,6 +65,17 @@ Result<void> check_other_elements(const ModelDifference& difference) {
   return {};
 }
 
+Result<void> check_hidden_elements(const ModelDifference& difference) {
+  const HiddenElements& hidden = difference.deck.hidden;
+  for (std::size_t e = 0; e < hidden.size(); ++e)
+    for (const NodeIndex node : hidden.nodes_of(e))
+      if (is_gone(difference.model, node))
+        return fail(still_used(
+            difference, node,
+            std::string(name(hidden.cards[e].element_class)) + " " + std::to_string(hidden.cards[e].id) + ", which isn't shown,"));
+  return {};
+}
+
 Result<void> check_midside_nodes(const ModelDifference& difference) {
   const Model& model = difference.model;
   for (const MidsideNodes& midside : *difference.original.midside) {
@@ -87,6 +98,7 @@ Result<void> check_removed_nodes(const ModelDifference& difference) {
       for (const ShellIndex shell : difference.original.adjacency->shells_of(node))
         if (Result<void> fine = check_nodes_of(difference, shell); !fine) return fine;
   if (Result<void> fine = check_other_elements(difference); !fine) return fine;
+  if (Result<void> fine = check_hidden_elements(difference); !fine) return fine;
   return check_midside_nodes(difference);
 }
 

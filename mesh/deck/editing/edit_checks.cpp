@@ -11,6 +11,13 @@
 #include "mesh/deck/writing/card_writer.h"
 
 namespace prismesh::mesh::deck {
+namespace {
+
+constexpr std::string_view kSharedId =
+    "two shells have this number, and an edit of one of them would have to say so in the sets and cards that name it, which this version "
+    "can't";
+
+}  // namespace
 
 std::optional<Error> DeletionCheck::named_by_card(Referred referred, std::int64_t id, const std::string& what) const {
   for (const Reference& reference : deck_.references->naming(referred, id)) {
@@ -47,6 +54,8 @@ Result<void> DeletionCheck::may_be_deleted(Referred referred, std::int64_t id) {
 
 Result<void> DeletionCheck::check_unread_text(Referred referred, std::int64_t id) {
   const std::string what = std::string(name(referred)) + " " + std::to_string(id);
+  if (referred == Referred::shell && deck_.shares_id(id))
+    return fail(deck_.files[0].path.string(), what + " can't be removed: " + std::string(kSharedId));
   std::optional<Error> error = named_unseen(what);
   if (!error) error = named_in_unread(referred, id, what);
   if (error) return fail(std::move(*error));
@@ -58,6 +67,7 @@ DivisionCheck::~DivisionCheck() = default;
 
 Result<void> DivisionCheck::may_be_divided(std::int64_t shell) {
   const std::string what = "shell " + std::to_string(shell) + " can't be divided: ";
+  if (deck_.shares_id(shell)) return fail(deck_.files[0].path.string(), what + std::string(kSharedId));
   for (const Reference& reference : deck_.references->naming(Referred::shell, shell)) {
     if (reference.role != ReferenceRole::single) continue;
     const Referrer& card = deck_.references->referrers()[reference.referrer];
@@ -92,6 +102,8 @@ Result<void> KindCheck::may_change_kind(ShellIndex shell) {
   if (writer_->holds_triangles_and_quads(card.ref())) return {};
   const bool to_triangle = !original_.shell(shell).is_triangle();
   const std::string what = shell_name(original_, shell) + " can't become a " + (to_triangle ? "triangle" : "quad") + ": ";
+  if (deck_.shares_id(original_.shell_ids[shell.value]))
+    return fail(error_at(deck_, card.run.file, card.offset, what + std::string(kSharedId)));
   if (const std::string why = other_kind_->card_that_forbids(shell, to_triangle); !why.empty())
     return fail(error_at(deck_, card.run.file, card.offset, what + why));
   // Its card with the other number of corners: which nodes these are doesn't matter.

@@ -22,7 +22,8 @@ class DeletionCheck {
   /// The deck must outlive this.
   explicit DeletionCheck(const Deck& deck) : deck_(deck), unread_(deck) {}
   /// A set with the id in a list or range allows the removal: saving takes the id out of it. Errors: the first card that names the id alone
-  /// or as the corner of a segment; unread text that holds the number; encrypted text or a missing include file, which may name anything.
+  /// or as the corner of a segment; another shell has the id too; unread text that holds the number; encrypted text or a missing include
+  /// file, which may name anything.
   Result<void> may_be_deleted(Referred referred, std::int64_t id);
   /// As may_be_deleted, without the cards that the reader understands.
   Result<void> check_unread_text(Referred referred, std::int64_t id);
@@ -42,8 +43,8 @@ class DivisionCheck {
   /// The deck must outlive this.
   explicit DivisionCheck(const Deck& deck);
   ~DivisionCheck();
-  /// Errors: a card names the shell alone and can't be copied for its pieces (CardWriter::inheritance); unread text holds the shell's id,
-  /// and may say something that must hold for the pieces too.
+  /// Errors: another shell has the id too; a card names the shell alone and can't be copied for its pieces (CardWriter::inheritance);
+  /// unread text holds the shell's id, and may say something that must hold for the pieces too.
   Result<void> may_be_divided(std::int64_t shell);
   /// Whether a node may be added between these nodes. Errors: unread text holds all their ids, and may say something that must hold for
   /// the new node too.

@@ -130,11 +130,10 @@ class PieceReader {
     fields_.fill(0);
     for (f = 0; f < std::min(wanted, card_.count()); ++f) {
       const std::optional<std::int64_t> value = card_.integer(f, *parameters_);
-      if (!value) {
-        usable = false;
-        return refuse(line, card_.text(f), f == 0 ? "an element id" : "an id", fields_[0]);
-      }
-      fields_[f] = *value;
+      // After an unknown parameter the fields behind are read all the same: nodes of an element that is left out are needed.
+      if (!value && usable && !refuse(line, card_.text(f), f == 0 ? "an element id" : "an id", fields_[0])) return false;
+      usable &= value.has_value();
+      fields_[f] = value.value_or(0);
     }
     return true;
   }
@@ -175,6 +174,7 @@ class PieceReader {
     const std::array<std::int64_t, 4> midside = {fields_[6], fields_[7], fields_[8], fields_[9]};
     const bool has_midside = std::any_of(midside.begin(), midside.end(), [](std::int64_t n) { return n > 0; });
     shell_is_kept_ = usable && add_shell(line, midside, has_midside);
+    if (!shell_is_kept_) out_.hide(ElementClass::shell, line.offset, fields_[0], std::span(fields_).subspan(2, 8));
     if (!segment_->form.thickness) return true;
     Line card;
     if (lines_->next(card)) read_thickness(card);
@@ -247,7 +247,9 @@ class PieceReader {
     elements.nodes.insert(elements.nodes.end(), nodes.begin(), nodes.end());
     elements.first_node.push_back(static_cast<std::uint32_t>(elements.nodes.size()));
     elements.offset.push_back(line.offset);
-    elements.numbering.push_back(numbering_of(segment_->word));
+    // Masses and other elements are numbered by keyword; of the other classes each has one numbering, whatever the keyword's options.
+    const bool by_keyword = element_class == ElementClass::mass || element_class == ElementClass::other;
+    elements.numbering.push_back(by_keyword ? numbering_of(segment_->word) : 0);
   }
 
   bool read_plain(const Line& line) {
@@ -257,20 +259,24 @@ class PieceReader {
     const std::size_t nodes = plotel ? 2 : static_cast<std::size_t>(segment_->form.node_fields);
     bool usable = true;
     if (!cut_integers(line, first + nodes, usable)) return false;
-    if (!usable) return true;
-    if (element_id_is_bad(line)) return false;
+    if (usable && element_id_is_bad(line)) return false;
     const ElementClass element_class = kind == CardKind::beam       ? ElementClass::beam
                                        : kind == CardKind::tshell   ? ElementClass::tshell
                                        : kind == CardKind::discrete ? ElementClass::discrete
                                                                     : ElementClass::other;
-    ++out_.counts.of(element_class);
     std::vector<std::int64_t>& list = nodes_;
     list.assign(fields_.begin() + static_cast<std::ptrdiff_t>(first), fields_.begin() + static_cast<std::ptrdiff_t>(first + nodes));
+    if (!usable) {
+      out_.hide(element_class, line.offset, fields_[0], list);
+      return true;
+    }
+    ++out_.counts.of(element_class);
     // A spring's second end may be the ground.
     if (element_class == ElementClass::discrete) std::erase(list, 0);
     if (std::any_of(list.begin(), list.end(), [](std::int64_t n) { return n <= 0; }) || list.empty()) {
       out_.note("incomplete-element", line.offset, fields_[0]);
       ++out_.left_out.of(element_class);
+      out_.hide(element_class, line.offset, fields_[0], list);
       return true;
     }
     add_element(element_class, line, fields_[0], plotel ? 0 : fields_[1], list);
@@ -296,10 +302,12 @@ class PieceReader {
       nodes_.insert(nodes_.end(), fields_.begin(), fields_.end());
     }
     ++out_.counts.solid;
-    if (usable)
+    if (usable) {
       add_solid(line, id, part);
-    else
+    } else {
       ++out_.left_out.solid;
+      out_.hide(ElementClass::solid, line.offset, id, nodes_);
+    }
     return true;
   }
 
@@ -312,6 +320,7 @@ class PieceReader {
     if (nodes_.size() < 4 || std::any_of(nodes_.begin(), nodes_.end(), [](std::int64_t n) { return n <= 0; })) {
       out_.note("incomplete-element", line.offset, id);
       ++out_.left_out.solid;
+      out_.hide(ElementClass::solid, line.offset, id, nodes_);
       return;
     }
     add_element(ElementClass::solid, line, id, part, nodes_);
@@ -364,6 +373,10 @@ void transform(PieceCards& cards, const IncludeContext& context) {
   const IdOffsets& by = context.offsets;
   shift(cards.node_id, by.node);
   RawShells& shells = cards.shells;
+  for (RawHiddenElement& element : cards.hidden) {
+    if (element.id > 0) element.id += by.element;
+    shift(element.nodes, by.node);
+  }
   shift(shells.id, by.element);
   shift(shells.part, by.part);
   for (auto& nodes : shells.nodes) shift(nodes, by.node);

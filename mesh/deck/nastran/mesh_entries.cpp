@@ -68,6 +68,7 @@ void read_shell(const EntryCard& card, const ElementForm& form, std::int64_t id,
   ++target.cards.counts.of_shell(fields.corners == 3, has_midside);
   if (!is_complete) {
     ++target.cards.left_out.of_shell(fields.corners == 3, has_midside);
+    target.cards.hide(ElementClass::shell, card.place.offset, id, target.nodes);
     return target.cards.note("incomplete-element", card.place.offset, id);
   }
   if (form.name == "CQUAD" && card.fields.integer_or_zero(10) > 0)
@@ -91,6 +92,9 @@ void add_element(const EntryCard& card, const ElementForm& form, std::int64_t id
   to.nodes.insert(to.nodes.end(), nodes.begin(), nodes.end());
   to.first_node.push_back(static_cast<std::uint32_t>(to.nodes.size()));
   to.offset.push_back(card.place.offset);
+  // Beside the mesh, entries of different names with one number are found in many decks.
+  const bool by_name = form.element_class == ElementClass::mass || form.element_class == ElementClass::other;
+  to.numbering.push_back(by_name ? numbering_of(form.name) : 0);
 }
 
 /// The second element on a card of pairs, if there is one.
@@ -178,6 +182,7 @@ void read_element(const EntryCard& card, const ElementForm& form, PieceTarget& t
   target.references.read_element(card.fields, form, nodes, card.place);
   if (!is_complete) {
     ++target.cards.left_out.of(form.element_class);
+    target.cards.hide(form.element_class, card.place.offset, *id, nodes);
     return target.cards.note("incomplete-element", card.place.offset, *id);
   }
   add_element(card, form, *id, nodes, target.cards);

@@ -94,7 +94,7 @@ Result<DeckContents> read(FileSet files, Watch& watch) {
   PartTable table;
   settle_parts(found, facts, table);
   settle_thickness(found, facts, table);
-  settle_element_ids(found);
+  note_shared_element_ids(found);
   for (PieceFacts& some : facts) found.references.append(std::move(some.references));
   facts.clear();
   return found;

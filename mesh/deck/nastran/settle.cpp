@@ -228,50 +228,8 @@ namespace {
 struct ElementPlace {
   std::size_t piece = 0;
   std::size_t element_class = 0;
-  std::size_t element = 0;
   std::size_t offset = 0;
 };
-
-bool before(const ElementPlace& a, std::size_t piece, std::size_t offset) {
-  return std::pair(a.piece, a.offset) < std::pair(piece, offset);
-}
-
-template <class T>
-void keep_only(std::vector<T>& values, const std::vector<std::uint8_t>& drop) {
-  if (values.size() != drop.size()) return;
-  std::size_t out = 0;
-  for (std::size_t i = 0; i < values.size(); ++i)
-    if (!drop[i]) values[out++] = std::move(values[i]);
-  values.resize(out);
-}
-
-void drop_elements(RawElements& elements, const std::vector<std::uint8_t>& drop) {
-  RawElements kept;
-  for (std::size_t e = 0; e < elements.id.size(); ++e) {
-    if (drop[e]) continue;
-    kept.id.push_back(elements.id[e]);
-    kept.part.push_back(elements.part[e]);
-    kept.offset.push_back(elements.offset[e]);
-    kept.nodes.insert(kept.nodes.end(), elements.nodes.begin() + elements.first_node[e],
-                      elements.nodes.begin() + elements.first_node[e + 1]);
-    kept.first_node.push_back(static_cast<std::uint32_t>(kept.nodes.size()));
-  }
-  elements = std::move(kept);
-}
-
-void drop_shells(RawShells& shells, const std::vector<std::uint8_t>& drop) {
-  std::vector<std::uint32_t> kept_before(drop.size() + 1);
-  for (std::size_t i = 0; i < drop.size(); ++i) kept_before[i + 1] = kept_before[i] + (drop[i] ? 0 : 1);
-  for (PieceRun& run : shells.runs) run.first = kept_before[run.first];
-  std::erase_if(shells.midside, [&](const auto& entry) { return drop[entry.first] != 0; });
-  for (auto& entry : shells.midside) entry.first = kept_before[entry.first];
-  if (!shells.thickness.empty()) shells.thickness.resize(drop.size());
-  keep_only(shells.thickness, drop);
-  keep_only(shells.part, drop);
-  keep_only(shells.nodes, drop);
-  keep_only(shells.offset, drop);
-  keep_only(shells.id, drop);
-}
 
 /// All elements but shells, in the deck's order within each piece and class.
 std::vector<ElementPlace> places_of(const DeckContents& found, std::vector<std::int64_t>& ids) {
@@ -279,65 +237,26 @@ std::vector<ElementPlace> places_of(const DeckContents& found, std::vector<std::
   for (std::size_t p = 0; p < found.cards.size(); ++p)
     for (std::size_t c = 0; c < found.cards[p].elements.size(); ++c) {
       const RawElements& elements = found.cards[p].elements[c];
-      for (std::size_t e = 0; e < elements.id.size(); ++e) places.push_back({p, c, e, elements.offset[e]});
+      for (std::size_t e = 0; e < elements.id.size(); ++e) places.push_back({p, c, elements.offset[e]});
+      ids.insert(ids.end(), elements.id.begin(), elements.id.end());
     }
-  std::stable_sort(places.begin(), places.end(), [](const ElementPlace& a, const ElementPlace& b) { return before(a, b.piece, b.offset); });
-  for (const ElementPlace& place : places) ids.push_back(found.cards[place.piece].elements[place.element_class].id[place.element]);
   return places;
 }
 
-class DroppedElements {
- public:
-  explicit DroppedElements(DeckContents& found) : found_(found), elements_(found.cards.size()), shells_(found.cards.size()) {}
-
-  void element(const ElementPlace& place) {
-    const RawElements& elements = found_.cards[place.piece].elements[place.element_class];
-    std::vector<std::uint8_t>& drop = elements_[place.piece][place.element_class];
-    drop.resize(elements.id.size());
-    if (std::exchange(drop[place.element], std::uint8_t{1})) return;
-    ++found_.cards[place.piece].left_out.of(static_cast<ElementClass>(place.element_class));
-    warn(place.piece, place.offset, elements.id[place.element]);
-  }
-  void shell(std::size_t piece, std::size_t shell) {
-    const RawShells& shells = found_.cards[piece].shells;
-    shells_[piece].resize(shells.id.size());
-    shells_[piece][shell] = 1;
-    const auto midside = std::lower_bound(shells.midside.begin(), shells.midside.end(), shell,
-                                          [](const auto& entry, std::size_t wanted) { return entry.first < wanted; });
-    const bool has_midside = midside != shells.midside.end() && midside->first == shell;
-    ++found_.cards[piece].left_out.of_shell(shells.nodes[shell][2] == shells.nodes[shell][3], has_midside);
-    warn(piece, shells.offset[shell], shells.id[shell]);
-  }
-  void carry_out() {
-    for (std::size_t p = 0; p < found_.cards.size(); ++p) {
-      for (std::size_t c = 0; c < elements_[p].size(); ++c)
-        if (!elements_[p][c].empty()) drop_elements(found_.cards[p].elements[c], elements_[p][c]);
-      if (!shells_[p].empty()) drop_shells(found_.cards[p].shells, shells_[p]);
-    }
-  }
-
- private:
-  void warn(std::size_t piece, std::size_t offset, std::int64_t id) {
-    found_.warnings.note("duplicate-element", found_.cards[piece].file, offset,
-                         "element " + std::to_string(id) + " is defined again; its first definition counts");
-  }
-
-  DeckContents& found_;
-  std::vector<std::array<std::vector<std::uint8_t>, kElementClassCount>> elements_;
-  std::vector<std::vector<std::uint8_t>> shells_;
-};
-
 }  // namespace
 
-void settle_element_ids(DeckContents& found) {
+void note_shared_element_ids(DeckContents& found) {
   std::vector<std::int64_t> ids;
   const std::vector<ElementPlace> places = places_of(found, ids);
   if (places.empty()) return;
   const IdIndex index(ids);
-  DroppedElements dropped(found);
+  const auto note = [&](std::size_t piece, std::size_t offset, std::int64_t id) {
+    found.warnings.note("shared-element-number", found.cards[piece].file, offset,
+                        "element " + std::to_string(id) + " has the number of an element of another type; both are shown");
+  };
   for (std::size_t i = 0; i < places.size(); ++i)
-    if (index.find(ids[i]) != i) dropped.element(places[i]);
-  // Shells that share an id with another element; assemble handles equal ids among shells.
+    if (const std::uint32_t first = index.find(ids[i]); first != i && places[first].element_class != places[i].element_class)
+      note(places[i].piece, places[i].offset, ids[i]);
   std::vector<std::vector<std::size_t>> shared(found.cards.size());
   parallel_for(found.cards.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p)
@@ -345,15 +264,7 @@ void settle_element_ids(DeckContents& found) {
         if (index.find(found.cards[p].shells.id[s]) != IdIndex::kNotFound) shared[p].push_back(s);
   });
   for (std::size_t p = 0; p < shared.size(); ++p)
-    for (const std::size_t s : shared[p]) {
-      const RawShells& shells = found.cards[p].shells;
-      const ElementPlace& other = places[index.find(shells.id[s])];
-      if (before(other, p, shells.offset[s]))
-        dropped.shell(p, s);
-      else
-        dropped.element(other);
-    }
-  dropped.carry_out();
+    for (const std::size_t s : shared[p]) note(p, found.cards[p].shells.offset[s], found.cards[p].shells.id[s]);
 }
 
 }  // namespace prismesh::mesh::deck::nastran

@@ -19,7 +19,7 @@ void settle_scalar_points(DeckContents& found, std::span<PieceFacts> facts);
 /// Completes corner thicknesses by those of the properties.
 void settle_thickness(DeckContents& found, std::span<const PieceFacts> facts, const PartTable& table);
 
-/// Drops elements whose id an earlier element of any class has: element ids are unique over all classes.
-void settle_element_ids(DeckContents& found);
+/// Warns of elements of different classes with one id, which the manuals advise against.
+void note_shared_element_ids(DeckContents& found);
 
 }  // namespace prismesh::mesh::deck::nastran

@@ -51,7 +51,7 @@ class PieceReader {
       out_.begin_nodes(style.number(), segment.frame);
       return read_nodes();
     }
-    if (segment.form->kind == CardKind::shell) out_.begin_shells(style.number(), segment.frame);
+    if (segment.form->kind == CardKind::shell) out_.begin_shells(style.number(), segment.frame, segment.form->ends == 3 ? 1 : 0);
     return read_elements();
   }
 
@@ -135,18 +135,21 @@ class PieceReader {
   /// Reads the first `count` fields of a line into fields_; missing ones are 0. `element`: the line begins with its id. False: stop, an
   /// error is noted.
   bool cut_integers(std::string_view line, std::size_t offset, bool element, std::size_t count, bool& usable) {
+    std::fill_n(fields_.begin(), count, 0);
     for (std::size_t f = 0; f < count; ++f) {
       const std::string_view text = field(line, width_, f);
       std::int64_t& value = fields_[f];
-      value = 0;
       if (text.empty() || plain_integer(text.data(), text.data() + text.size(), value)) continue;
       const std::optional<std::int64_t> slow = integer(text);
       if (slow) {
         value = *slow;
         continue;
       }
-      usable = false;
-      return refuse(offset, text, element && f == 0 ? "an element id" : "an id", fields_[0]);
+      // The fields behind are read all the same: nodes of an element that is left out are needed.
+      if (usable || text.find('&') == std::string_view::npos) {
+        usable = false;
+        if (!refuse(offset, text, element && f == 0 ? "an element id" : "an id", fields_[0])) return false;
+      }
     }
     return true;
   }
@@ -178,6 +181,7 @@ class PieceReader {
     if (!complete) {
       ++out_.left_out.of_shell(is_triangle, false);
       if (usable) out_.note("incomplete-element", offset, fields_[0]);
+      hide(ElementClass::shell, offset, fields_[0], std::span(fields_).subspan(1, triangle ? 3 : 4));
       return true;
     }
     RawShells& shells = out_.shells;
@@ -188,6 +192,12 @@ class PieceReader {
     if (!shells.thickness.empty()) shells.thickness.push_back(0);
     if (line.size() > 8 * width_) return read_thickness(field(line, width_, 8, 2), offset);
     return true;
+  }
+
+  void hide(ElementClass element_class, std::size_t offset, std::int64_t id, std::span<std::int64_t> nodes) {
+    for (std::int64_t& node : nodes)
+      if (node > 0) node += added_.node;
+    out_.hide(element_class, offset, id > 0 ? id + added_.element : 0, nodes);
   }
 
   bool read_thickness(std::string_view text, std::size_t offset) {
@@ -212,10 +222,12 @@ class PieceReader {
       nodes_.insert(nodes_.end(), fields_.begin(), fields_.begin() + form.nodes[l]);
     }
     ++out_.counts.of(form.element_class);
-    if (usable)
+    if (usable) {
       add_element(offset, id);
-    else
+    } else {
       ++out_.left_out.of(form.element_class);
+      hide(form.element_class, offset, id, nodes_);
+    }
     return true;
   }
 
@@ -238,6 +250,7 @@ class PieceReader {
     if (std::any_of(nodes_.begin(), end, [](std::int64_t n) { return n <= 0; }) || (form.ends > 0 && ends == 0)) {
       out_.note("incomplete-element", offset, id);
       ++out_.left_out.of(form.element_class);
+      hide(form.element_class, offset, id, nodes_);
       return;
     }
     for (std::int64_t& node : nodes_)
@@ -253,7 +266,8 @@ class PieceReader {
       elements.nodes.insert(elements.nodes.end(), nodes_.begin(), end);
     elements.first_node.push_back(static_cast<std::uint32_t>(elements.nodes.size()));
     elements.offset.push_back(offset);
-    elements.numbering.push_back(numbering_of(segment_->form->word));
+    // All solids have one numbering.
+    elements.numbering.push_back(form.element_class == kSolid ? 0 : numbering_of(form.word));
   }
 
   std::string_view text_;

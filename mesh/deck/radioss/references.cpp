@@ -80,6 +80,12 @@ void read_naming_card(const NamingBlock& of, const Line& line, int card, Referen
   }
 }
 
+ShellKind shells_named_by(const Keyword& keyword) {
+  const std::string_view word = keyword.word(keyword.word(0) == "TH" ? 1 : 0);
+  if (word == "GRSH3N" || word == "SH3N") return ShellKind::triangles;
+  return word == "GRSHEL" || word == "SHEL" || word == "SHELL" ? ShellKind::quads : ShellKind::any;
+}
+
 /// The block as a referrer; its first line is the title.
 Referrer referrer_of(const Block& block, const Keyword& keyword, const Context& context, std::string_view title) {
   Referrer referrer;
@@ -90,6 +96,7 @@ Referrer referrer_of(const Block& block, const Keyword& keyword, const Context& 
   referrer.file = block.file;
   referrer.offset = block.offset;
   referrer.end = block.body.end;
+  referrer.shells = shells_named_by(keyword);
   referrer.style = referrer_style(context.field_width() == kOldField, context.added);
   return referrer;
 }

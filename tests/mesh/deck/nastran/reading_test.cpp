@@ -341,19 +341,21 @@ TEST(NastranIncludes, a_quote_that_isnt_closed_is_told_as_such) {
   EXPECT_EQ(opened->model.node_count(), 2u);
 }
 
-TEST(NastranElements, ids_are_unique_whatever_the_element) {
+TEST(NastranElements, of_different_types_with_one_number_are_all_shown) {
   const DeckFolder folder;
   const auto opened =
       folder.open(std::string(kGrids) +
                   "CQUAD4,1,1,1,2,3,4\nCROD,1,1,1,2\nCROD,2,1,1,2\nCQUAD4,2,1,1,2,3,4\nCQUAD4,3,1,1,2,3,4\nCQUAD4,3,1,1,2,3,4\n"
-                  "CONM2,2,1\n");
+                  "CONM2,2,1\nCONM2,2,1\nRBE2,2,1,123,2\n");
   ASSERT_OPENED(opened);
-  EXPECT_EQ(opened->model.shell_count(), 2u);
-  EXPECT_FALSE(opened->model.find_shell(2).valid());
-  EXPECT_EQ(block_of(opened->model, ElementClass::beam).id, (Ids{2}));
-  EXPECT_EQ(block_of(opened->model, ElementClass::mass).size(), 0u);
-  EXPECT_GT(warning(*opened->deck, "duplicate-element").count, 0u);
-  EXPECT_EQ(warning(*opened->deck, "duplicate-element").count, 4u);
+  EXPECT_EQ(opened->model.shell_count(), 3u);
+  EXPECT_TRUE(opened->model.find_shell(2).valid());
+  EXPECT_EQ(block_of(opened->model, ElementClass::beam).id, (Ids{1, 2}));
+  EXPECT_EQ(block_of(opened->model, ElementClass::mass).id, (Ids{2}));
+  EXPECT_EQ(block_of(opened->model, ElementClass::other).id, (Ids{2}));
+  EXPECT_EQ(warning(*opened->deck, "duplicate-element").count, 2u) << "a shell and a mass";
+  EXPECT_EQ(warning(*opened->deck, "shared-element-number").count, 5u);
+  EXPECT_EQ(opened->deck->hidden.size(), 2u);
   EXPECT_EQ(opened->deck->element_cards.quad, 4u);
 }
 

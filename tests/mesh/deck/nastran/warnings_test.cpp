@@ -126,16 +126,16 @@ TEST(NastranScalarPoints, are_left_out_of_ranges_and_lists) {
   EXPECT_EQ(named("SPOINT,6\nSPC1,1,0,4,5,6\n", {3, 4, 5, 6, 7}), "nyynn");
 }
 
-/// What the shells behind one that is left out have of their own goes with them.
+/// What the shells behind one that is defined again have of their own goes with them.
 TEST(NastranElementIds, shells_behind_one_that_is_left_out_keep_what_is_theirs) {
   const DeckFolder folder;
-  const auto opened =
-      folder.open(kFourGrids +
-                  "CROD,1,1,1,2\nCQUAD4,1,1,1,2,3,4\nCQUAD4,5,1,1,2,3,4\n,,,2.,2.,2.,2.\nCQUAD4*,6,1,1,2\n*,3,4\nCQUAD8,7,1,1,2,3,4,5\n"
-                  "CQUAD4,8,1,1,2,3,4\n,,,3.,3.,3.,3.\n");
+  const auto opened = folder.open(
+      kFourGrids +
+      "CQUAD4,1,1,1,2,3,4\nCQUAD4,1,1,1,2,3,4\nCQUAD4,5,1,1,2,3,4\n,,,2.,2.,2.,2.\nCQUAD4*,6,1,1,2\n*,3,4\nCQUAD8,7,1,1,2,3,4,5\n"
+      "CQUAD4,8,1,1,2,3,4\n,,,3.,3.,3.,3.\n");
   ASSERT_OPENED(opened);
   const Model& model = opened->model;
-  ASSERT_EQ(model.shell_count(), 4u);
+  ASSERT_EQ(model.shell_count(), 5u);
   EXPECT_EQ(model.shell_thickness[model.find_shell(5).value], 2.f);
   EXPECT_EQ(model.shell_thickness[model.find_shell(7).value], 0.f);
   EXPECT_EQ(model.shell_thickness[model.find_shell(8).value], 3.f);
