@@ -52,6 +52,7 @@ void print_text(std::ostream& out, const mesh::document::Document& document) {
   const auto guessed = [](bool is) { return is ? " (guessed)" : ""; };
   out << printable(document.path.string()) << ": " << name(deck.format) << ", " << counted(deck.files.size(), "file") << '\n';
   for (const mesh::deck::SourceFile& file : deck.files) out << "  " << printable(file.path.string()) << '\n';
+  for (const mesh::deck::CompanionFile& file : deck.companions) out << "  " << printable(file.path.string()) << " (named, not read)\n";
   out << "length unit  " << unit << guessed(settings.length_unit_guessed) << '\n';
   const mesh::document::Judging& judging = *document.current().judging;
   out << "target size  " << target_sizes(document) << ' ' << unit << guessed(is_guessed(judging.target_size)) << '\n';

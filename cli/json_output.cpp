@@ -64,6 +64,8 @@ std::string info_json(const document::Document& document, const std::vector<Part
   const deck::Deck& deck = *document.deck;
   Json files = Json::array();
   for (const deck::SourceFile& file : deck.files) files.push_back(printable(file.path.string()));
+  Json companions = Json::array();
+  for (const deck::CompanionFile& file : deck.companions) companions.push_back(printable(file.path.string()));
   Json listed = Json::array();
   for (std::size_t p = 0; p < parts.size(); ++p) {
     const PartFigures& part = parts[p];
@@ -88,6 +90,7 @@ std::string info_json(const document::Document& document, const std::vector<Part
   const document::Judging& judging = *document.current().judging;
   const Json json = {{"format", name(deck.format)},
                      {"files", std::move(files)},
+                     {"companions", std::move(companions)},
                      {"length_unit", name(settings.length_unit)},
                      {"length_unit_guessed", settings.length_unit_guessed},
                      {"target_size", judging.deck_size},

@@ -23,6 +23,9 @@ namespace {
 /// The share of unpacking in the progress.
 constexpr double kUnpacked = 0.1;
 
+/// A NUL byte among the first ones tells that a file isn't text.
+constexpr std::size_t kBytesThatTell = 4096;
+
 /// Entities are numbered with 32 bits.
 constexpr std::size_t kMaxEntities = 0xfffffffeu;
 
@@ -59,6 +62,16 @@ std::optional<Error> first_error(const DeckContents& found) {
   return std::nullopt;
 }
 
+/// Warns of a deck that has no mesh because it stands in files that aren't read.
+void note_mesh_elsewhere(const Deck& deck, const Model& model, Warnings& warnings) {
+  if (model.node_count() > 0 || deck.unread_files.empty()) return;
+  std::string names;
+  for (const UnreadFile& unread : deck.unread_files)
+    names += (names.empty() ? "" : ", ") + deck.files[unread.file].relative.generic_string();
+  warnings.note("mesh-elsewhere", 0, 0,
+                "the deck has no nodes of its own: its mesh stands in files that this version doesn't read (" + names + ")");
+}
+
 /// The model and the deck, complete. Errors: the first malformed card (file and line), too many entities, cancelled.
 Result<OpenedDeck> finish(DeckContents found, Watch& watch) {
   if (watch.stopped()) return fail(cancelled());
@@ -84,6 +97,18 @@ Result<OpenedDeck> finish(DeckContents found, Watch& watch) {
   for (std::size_t i = 0; i < deck->files.size(); ++i)
     deck->on_disk->files.push_back({deck->files[i].bytes.identity(), found.hashes[i], true});
   deck->missing_files = std::move(found.missing_files);
+  deck->companions = std::move(found.companions);
+  deck->unread_files = std::move(found.unread_files);
+  deck->taken.nodes.insert(deck->taken.nodes.end(), found.taken.nodes.begin(), found.taken.nodes.end());
+  deck->taken.elements = std::move(found.taken.elements);
+  unite(deck->taken.nodes);
+  unite(deck->taken.elements);
+  note_mesh_elsewhere(*deck, opened.model, found.warnings);
+  for (const UnreadFile& unread : deck->unread_files) {
+    const std::string_view text = deck->files[unread.file].bytes.text();
+    const bool is_binary = text.substr(0, kBytesThatTell).find('\0') != std::string_view::npos;
+    found.references.add(UnreadText{unread.keyword, unread.file, 0, text.size(), is_binary, {}});
+  }
   found.references.finish();
   deck->references = std::make_shared<const References>(std::move(found.references));
   watch.tell(kAssembled);

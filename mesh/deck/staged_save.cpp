@@ -57,7 +57,7 @@ bool same_file(const fs::path& a, const fs::path& b) {
 
 /// One file that is going to be written.
 struct FilePlan {
-  std::size_t file = 0;
+  std::size_t file = 0;  ///< in Deck::files; from its size on, the companions follow
   fs::path target;
 };
 
@@ -98,16 +98,36 @@ Result<std::vector<FilePlan>> plan_in_place(const Deck& deck, const TextChanges&
 }
 
 /// Whether an include's name, in another folder, would lead to the old file or to a wrong one.
-bool stays_behind(const SourceFile& include) {
-  return include.relative.is_absolute() || include.relative.begin() == include.relative.end() || *include.relative.begin() == "..";
+bool stays_behind(const fs::path& relative) {
+  return relative.is_absolute() || relative.begin() == relative.end() || *relative.begin() == "..";
+}
+
+/// Copies of the companions. One with an absolute name is found from everywhere.
+Result<std::vector<FilePlan>> plan_companions(const Deck& deck, const fs::path& target) {
+  std::vector<FilePlan> plans;
+  for (std::size_t c = 0; c < deck.companions.size(); ++c) {
+    const CompanionFile& companion = deck.companions[c];
+    if (companion.relative.is_absolute()) continue;
+    if (stays_behind(companion.relative))
+      return fail(companion.path.string(),
+                  "is a file that the deck names outside the main file's folder, so the deck can't be saved into another folder");
+    const fs::path to = target.parent_path() / companion.relative;
+    if (!same_file(companion.path, to)) plans.push_back({deck.files.size() + c, to});
+  }
+  return plans;
 }
 
 Result<std::vector<FilePlan>> plan_elsewhere(const Deck& deck, const TextChanges& text, const fs::path& target) {
   const bool other_folder = !same_file(folder_of(target), folder_of(deck.files[0].path));
   std::vector<FilePlan> plans;
+  if (other_folder) {
+    Result<std::vector<FilePlan>> companions = plan_companions(deck, target);
+    if (!companions) return companions;
+    plans = std::move(*companions);
+  }
   for (const std::size_t file : writing_order(deck)) {
     const SourceFile& source = deck.files[file];
-    if (file != 0 && other_folder && stays_behind(source))
+    if (file != 0 && other_folder && stays_behind(source.relative))
       return fail(source.path.string(), "is an include outside the main file's folder, so the deck can't be saved into another folder");
     const fs::path to = file == 0 ? target : target.parent_path() / source.relative;
     const auto own = std::find_if(deck.files.begin(), deck.files.end(), [&](const SourceFile& other) { return same_file(other.path, to); });
@@ -151,13 +171,21 @@ Progress part_of(const Progress& progress, double begin, double share) {
   return [&progress, begin, share](double fraction) { return !progress || progress(begin + fraction * share); };
 }
 
-/// Files with their content, ready to be written. `packed` owns the bytes of packed files.
+/// Files with their content, ready to be written. `packed` owns the bytes of packed files, `companions` those of companions.
 Result<std::vector<PendingFile>> pending_files(const Deck& deck, const std::vector<FilePlan>& plans, const TextChanges& text,
-                                               std::deque<std::string>& packed, const Progress& progress) {
+                                               std::deque<std::string>& packed, std::deque<FileBytes>& companions,
+                                               const Progress& progress) {
   std::vector<PendingFile> pending;
   for (const FilePlan& plan : plans) {
     const double part = 1 / static_cast<double>(plans.size());
     const Progress packing = part_of(progress, static_cast<double>(pending.size()) * part, part);
+    if (plan.file >= deck.files.size()) {
+      Result<FileBytes> bytes = read_file(deck.companions[plan.file - deck.files.size()].path);
+      if (!bytes) return fail(bytes.error());
+      companions.push_back(std::move(*bytes));
+      pending.push_back({plan.target, {companions.back().text()}});
+      continue;
+    }
     Result<std::vector<std::string_view>> stored = stored_content_of(deck.files[plan.file], text.by_file[plan.file], packed, packing);
     if (!stored) return fail(stored.error());
     pending.push_back({plan.target, std::move(*stored)});
@@ -202,8 +230,9 @@ Result<StagedSave> StagedSave::write(const Deck& deck, const Model& original, co
   if (!plans) return fail(plans.error());
 
   std::deque<std::string> packed;
+  std::deque<FileBytes> companions;
   const Result<std::vector<PendingFile>> pending =
-      pending_files(deck, *plans, *text, packed, part_of(progress, of_cards, before_writing - of_cards));
+      pending_files(deck, *plans, *text, packed, companions, part_of(progress, of_cards, before_writing - of_cards));
   if (!pending) return fail(pending.error());
   Result<StagedFiles> staged = StagedFiles::write(*pending, part_of(progress, before_writing, 1 - before_writing));
   if (!staged) return fail(std::move(staged.error()));
@@ -211,7 +240,7 @@ Result<StagedSave> StagedSave::write(const Deck& deck, const Model& original, co
   for (std::size_t i = 0; i < plans->size(); ++i) {
     const std::size_t file = (*plans)[i].file;
     const Hash128 before = save.in_place_ ? deck.on_disk->files[file].content : Hash128{};
-    save.files_.push_back({file, before, hash128((*pending)[i].pieces), text->by_file[file].empty()});
+    save.files_.push_back({file, before, hash128((*pending)[i].pieces), file >= deck.files.size() || text->by_file[file].empty()});
   }
   save.rounding_ = text->rounding;
   save.report_ = report_of(deck, *text, *plans);

@@ -18,7 +18,7 @@ namespace prismesh::mesh::deck {
 class StagedSave {
  public:
   struct File {
-    std::size_t index = 0;  ///< in Deck::files
+    std::size_t index = 0;  ///< in Deck::files; from its size on, in Deck::companions
     Hash128 before;         ///< content of the file that will be replaced; empty for another path
     Hash128 after;
     bool as_read = false;  ///< the save gives the file the content that was read

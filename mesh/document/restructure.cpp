@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "base/counted.h"
 #include "mesh/deck/editing/new_ids.h"
 #include "mesh/deck/editing/text_changes.h"
 #include "mesh/document/apply.h"
@@ -150,6 +151,11 @@ Result<void> restructure(const Document& document, const repair::Restructuring& 
   report.nodes_moved = moved.size();
   report.elements_added = changes.added_shells.size();
   report.elements_removed = changes.removed_shells.size();
+  const std::vector<std::string>& missing = document.deck->missing_files;
+  if (!missing.empty() && changes.added_nodes.size() + changes.added_shells.size() > 0)
+    report.notes.push_back(
+        "the include file " + missing.front() + (missing.size() > 1 ? " and " + counted(missing.size() - 1, "other") : std::string()) +
+        (missing.size() > 1 ? " aren't" : " isn't") + " there; the new nodes and elements may have numbers that it uses");
   return {};
 }
 

@@ -87,14 +87,22 @@ struct KeptBlock {
   Block block;
 };
 
+/// *ELEMENT with OFFSET=.
+struct OffsetElements {
+  Block block;
+  std::int64_t by = 0;
+};
+
 struct DeckOutline {
   explicit DeckOutline(FileSet found) : files(std::move(found)) {}
 
   std::string_view text(std::uint32_t file) const { return texts[file]; }
+  bool is_shared(std::uint32_t file) const { return file < data_uses.size() && data_uses[file] > 1; }
   Parameters parameters(const Block& block) const { return {text(block.file), block.begin, block.end}; }
 
   FileSet files;
-  std::vector<std::string_view> texts;  ///< by file; stay valid when the files are moved out of `files`
+  std::vector<std::string_view> texts;   ///< by file; stay valid when the files are moved out of `files`
+  std::vector<std::uint32_t> data_uses;  ///< by file: how many keywords take their data lines from it (INPUT=)
   Warnings warnings;
   std::vector<Scope> scopes{Scope()};
   std::vector<Instance> instances;
@@ -106,7 +114,8 @@ struct DeckOutline {
   std::vector<Segment> segments;
   std::map<std::string, double, std::less<>> values;  ///< *PARAMETER: those that are plain numbers
   std::vector<std::string> words;                     ///< keywords of `kept`
-  std::vector<KeptBlock> kept;                        ///< everything but the mesh, in the order it is read
+  std::vector<OffsetElements> offset_elements;
+  std::vector<KeptBlock> kept;  ///< everything but the mesh, in the order it is read
 };
 
 }  // namespace prismesh::mesh::deck::abaqus

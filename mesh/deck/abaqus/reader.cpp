@@ -4,6 +4,7 @@
 #include <map>
 #include <utility>
 
+#include "mesh/deck/abaqus/generated_ids.h"
 #include "mesh/deck/abaqus/mesh_cards.h"
 #include "mesh/deck/abaqus/references.h"
 #include "mesh/deck/abaqus/sets.h"
@@ -163,8 +164,11 @@ Result<DeckContents> read(FileSet files, Watch& watch) {
     found.parts = make_parts(outline, found.cards, found.warnings);
     if (Result<void> shifted = shift_instances(outline, found); !shifted) return fail(shifted.error());
     found.references = find_references(outline);
+    found.taken = find_generated_ids(outline, largest_ids(found.cards));
   }
   found.missing_files = std::move(outline.files.missing);
+  found.companions = std::move(outline.files.companions);
+  found.unread_files = std::move(outline.files.unread);
   return found;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "mesh/deck/abaqus/instance_shifts.h"
 #include "mesh/deck/text/number.h"
 
 namespace prismesh::mesh::deck::abaqus {
@@ -219,21 +220,7 @@ class Finder {
       return;
     }
     const Parameters given = outline_.parameters(block);
-    for (const std::int64_t shift : shifts_of(block, given)) read_for(kept, *rule, given, shift);
-  }
-
-  /// What to add to the ids on the block's lines, for each instance that they stand for.
-  std::vector<std::int64_t> shifts_of(const Block& block, const Parameters& given) const {
-    if (const auto instance = given.value("INSTANCE"); instance && block.scope == 0) {
-      const auto at = outline_.instance_by_name.find(label(*instance));
-      if (at == outline_.instance_by_name.end()) return {};
-      return {outline_.instances[at->second].shift};
-    }
-    if (block.instance != kNone) return {outline_.instances[block.instance].shift};
-    if (block.scope == 0 || outline_.instances.empty()) return {0};
-    std::vector<std::int64_t> out;
-    for (const std::uint32_t instance : outline_.scopes[block.scope].instances) out.push_back(outline_.instances[instance].shift);
-    return out;
+    for (const std::int64_t shift : shifts_of(outline_, block, given)) read_for(kept, *rule, given, shift);
   }
 
   void read_for(const KeptBlock& kept, const Rule& rule, const Parameters& given, std::int64_t shift) {
@@ -253,9 +240,13 @@ class Finder {
     equation_left_ = 0;
     for (std::uint32_t s = 0; s < kept.block.segments; ++s) {
       const Segment& where = outline_.segments[kept.block.first_segment + s];
+      // The lines of a set stay together; others are told by the file that they stand in.
+      if (!set && where.file != (segment_ != nullptr ? segment_->file : kept.block.file)) referrer_ = kNone;
+      segment_ = &where;
       DataLines lines(outline_.text(where.file), where.begin, where.end);
       for (DataLine line; lines.next(line);) read_line(rule.shape, line);
     }
+    segment_ = nullptr;
   }
 
   void read_line(Shape shape, const DataLine& line) {
@@ -363,9 +354,16 @@ class Finder {
     card.file = block_->file;
     card.offset = block_->begin;
     card.end = block_->end;
-    if (block_->segments > 0)
+    const bool is_elsewhere = segment_ != nullptr && segment_->file != block_->file && word_ != "NSET" && word_ != "ELSET";
+    if (is_elsewhere) {
+      card.file = segment_->file;
+      card.offset = segment_->begin;
+      card.end = segment_->end;
+    } else if (block_->segments > 0)
       if (const Segment& first = outline_.segments[block_->first_segment]; first.file == block_->file) card.end = first.end;
-    const bool other_ids = shift_ != 0 || (block_->scope > 0 && outline_.scopes[block_->scope].instances.size() > 1);
+    // A data file that several keywords name can't be changed for one of them.
+    const bool is_shared = is_elsewhere && outline_.is_shared(segment_->file);
+    const bool other_ids = is_shared || shift_ != 0 || (block_->scope > 0 && outline_.scopes[block_->scope].instances.size() > 1);
     card.style = static_cast<std::uint16_t>((given_->has("GENERATE") ? kStyleGenerate : 0) | (other_ids ? kStyleOtherIds : 0) |
                                             (word_ == "NSET" || word_ == "ELSET" ? 0 : kStyleNamesAndIds));
     return referrer_ = out_.add(std::move(card));
@@ -377,6 +375,7 @@ class Finder {
   const Block* block_ = nullptr;
   std::string_view word_;
   const Parameters* given_ = nullptr;
+  const Segment* segment_ = nullptr;  ///< being read
   std::int64_t shift_ = 0;
   std::uint32_t referrer_ = kNone;
   std::int64_t equation_left_ = 0;  ///< terms of the current equation that follow

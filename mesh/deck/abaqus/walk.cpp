@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <initializer_list>
+#include <iterator>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -70,6 +73,30 @@ class NameTables {
   std::map<std::string, std::uint32_t, std::less<>> types_;
   std::map<Group, std::uint32_t> groups_;
 };
+
+/// A parameter that names files to read, of one keyword or (empty) of any.
+/// Source: Abaqus Keywords Guide; for the last three CalculiX, "matrixassembles.f".
+struct FileParameter {
+  std::string_view word, parameter;
+};
+constexpr FileParameter kFileParameters[] = {
+    {"", "FILE"}, {"INSTANCE", "LIBRARY"}, {"SUBSTRUCTURE COPY", "OLDLIBRARY"}, {"", "STIFFNESSFILE"}, {"", "MASSFILE"},
+};
+
+/// Whether FILE= of a keyword names what the solver writes.
+bool is_output(std::string_view word, const Parameters& parameters) {
+  return word.ends_with("OUTPUT") || word.ends_with("FILE") || word.ends_with("GENERATE") || word.ends_with("PRINT") ||
+         parameters.has("WRITE");
+}
+
+/// Whether INPUT= of a keyword names a file with data lines. Others name results or matrices.
+bool is_text_for(std::string_view word, const std::string& file) {
+  static constexpr std::string_view kOthers[] = {"SUBMODEL", "CRACK PROPAGATION", "HCF", "VIEWFACTOR"};
+  if (std::find(std::begin(kOthers), std::end(kOthers), word) != std::end(kOthers)) return false;
+  const std::size_t point = file.rfind('.');
+  const std::string ending = point == std::string::npos ? "" : label(file.substr(point));
+  return ending != ".SIM" && ending != ".FRD" && ending != ".ODB" && ending != ".FIL";
+}
 
 /// What is done with the data lines of a keyword.
 enum class DataUse { skip, keep, nodes, elements, system, instance, values };
@@ -184,8 +211,49 @@ class Walker {
       at_.scope = 0;
     }
     const bool is_mesh = open_block_.use == DataUse::nodes || open_block_.use == DataUse::elements;
-    if (is_mesh || name == "NSET" || name == "ELSET")
-      if (const auto input = parameters.value("INPUT")) include(file, keyword.begin, *input, depth);
+    const auto input = parameters.value("INPUT");
+    if (input && (is_mesh || name == "NSET" || name == "ELSET"))
+      include(file, keyword.begin, *input, depth);
+    else if (input && is_text_for(name, *input))
+      read_data_file(file, keyword, *input);
+    else if (input)
+      accompany(file, keyword, *input, {""});
+    for (const FileParameter& each : kFileParameters)
+      if (each.word.empty() || each.word == name)
+        if (const auto value = parameters.value(each.parameter); value && !is_output(name, parameters))
+          accompany(file, keyword, *value, {"", ".fil", ".odb", ".sim", ".prt", ".res", ".mdl", ".stt"});
+  }
+
+  /// Takes a keyword's data lines from a file. It may name nodes and elements, so it is read like an include.
+  void read_data_file(std::uint32_t from, const Keyword& keyword, const std::string& name) {
+    std::string reason;
+    const std::filesystem::path folders[] = {outline_.files.folder_of(0), outline_.files.folder_of(from)};
+    const std::uint32_t file = outline_.files.include(from, name, folders, reason);
+    note_new_files();
+    if (file == FileSet::kNoFile)
+      return outline_.warnings.note_each("missing-include", from, keyword.begin,
+                                         "the file " + name + ", which *" + keyword.name + " takes its data from, " + reason);
+    outline_.data_uses.resize(outline_.files.files.size());
+    ++outline_.data_uses[file];
+    close_segment({file, 0, outline_.text(file).size()});
+  }
+
+  /// Notes files that the solver reads and that name nothing by number: results of other runs, matrices. With one of the endings at least
+  /// one must be there.
+  void accompany(std::uint32_t from, const Keyword& keyword, const std::string& name, std::span<const std::string_view> endings) {
+    std::string reason, last;
+    bool found = false;
+    const std::filesystem::path folders[] = {outline_.files.folder_of(0), outline_.files.folder_of(from)};
+    for (const std::string_view ending : endings) {
+      found |= outline_.files.accompany(name + std::string(ending), folders, last);
+      if (reason.empty()) reason = last;
+    }
+    if (!found)
+      outline_.warnings.note_each("missing-file", from, keyword.begin,
+                                  "the file " + name + ", which *" + keyword.name + " names, " + reason);
+  }
+  void accompany(std::uint32_t from, const Keyword& keyword, const std::string& name, std::initializer_list<std::string_view> endings) {
+    accompany(from, keyword, name, std::span(endings.begin(), endings.size()));
   }
 
   void close_segment(const Segment& segment) {
@@ -235,6 +303,8 @@ class Walker {
     const std::string type = label(named->substr(0, 80));
     open_block_.mesh.type = names_.type(type);
     open_block_.mesh.group = names_.group({at_.scope, label(parameters.value("ELSET").value_or(""))});
+    std::int64_t offset = 0;
+    if (const auto by = parameters.value("OFFSET"); by && parse_integer(*by, offset)) outline_.offset_elements.push_back({block, offset});
     const ElementType& known = outline_.types[open_block_.mesh.type].type;
     if (known.element_class == ElementClass::shell && !known.is_shell_section)
       outline_.warnings.note("shown-as-shells", block.file, block.begin,

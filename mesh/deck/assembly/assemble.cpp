@@ -127,6 +127,8 @@ Model assemble(std::span<PieceCards> cards, std::vector<Part> parts, Deck& deck,
   note_shared_ids(model, deck, warnings);
   model.elements = assemble_elements(cards, lookup, left_out, warnings);
   hide_unusable(cards, lookup, left_out.hidden);
+  // A new node with such an id would complete an element that nobody sees.
+  for (const std::int64_t node : left_out.undefined_nodes) deck.taken.nodes.push_back({node, node});
   settle_unread_nodes(cards, std::move(left_out.undefined_nodes), warnings);
   put_left_out(std::move(left_out), model, deck);
   return model;

@@ -26,6 +26,9 @@ struct DeckContents {
   std::optional<LengthUnit> length_unit;  ///< nullopt: the deck doesn't give it
   Warnings warnings;
   std::vector<std::string> missing_files;
+  std::vector<CompanionFile> companions;
+  std::vector<UnreadFile> unread_files;
+  TakenIds taken;  ///< in any order
 };
 
 }  // namespace prismesh::mesh::deck

@@ -102,6 +102,31 @@ std::uint32_t FileSet::include(std::uint32_t from, const std::string& name, std:
   return kNoFile;
 }
 
+std::uint32_t FileSet::include_unread(std::uint32_t from, const std::string& name, std::span<const fs::path> folders,
+                                      const std::string& keyword, std::string& reason) {
+  const std::uint32_t file = include(from, name, folders, reason);
+  const bool is_known = std::any_of(unread.begin(), unread.end(), [&](const UnreadFile& each) { return each.file == file; });
+  if (file != kNoFile && file != 0 && !is_known) unread.push_back({file, keyword});
+  return file;
+}
+
+bool FileSet::accompany(const std::string& name, std::span<const fs::path> folders, std::string& reason) {
+  const std::optional<fs::path> found = find(name, folders);
+  if (!found) {
+    reason = why_not_found(name, folders);
+    return false;
+  }
+  const std::string canonical = canonical_name(*found);
+  if (companions.size() < kMaxFiles && !by_canonical_.contains(canonical) && accompanying_.insert(canonical).second)
+    companions.push_back({*found, relative_name(*found, name)});
+  return true;
+}
+
+/// An absolute name would still mean the old file in a copy of the deck, so it isn't made relative.
+fs::path FileSet::relative_name(const fs::path& found, const std::string& name) const {
+  return fs::path(name).is_absolute() ? fs::path(name) : normal(found).lexically_relative(main_folder_);
+}
+
 /// Returns the index of the file and reads it if it wasn't read before. kNoFile: it can't be read; `reason` gets why.
 std::uint32_t FileSet::open(const fs::path& found, const std::string& name, std::string& reason) {
   const std::string canonical = canonical_name(found);
@@ -117,11 +142,9 @@ std::uint32_t FileSet::open(const fs::path& found, const std::string& name, std:
     return kNoFile;
   }
   if (bytes->is_packed()) unpacked_bytes_ += bytes->text().size();
-  // An absolute name would still mean the old file in a copy of the deck, so it isn't made relative.
-  const fs::path relative = fs::path(name).is_absolute() ? fs::path(name) : normal(found).lexically_relative(main_folder_);
   const auto index = static_cast<std::uint32_t>(files.size());
   by_canonical_[canonical] = index;
-  files.push_back({found, relative, std::move(*bytes)});
+  files.push_back({found, relative_name(found, name), std::move(*bytes)});
   return index;
 }
 

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <utility>
@@ -31,19 +32,29 @@ class FileSet {
   /// there") and `missing` the name.
   std::uint32_t include(std::uint32_t from, const std::string& name, std::span<const std::filesystem::path> folders, std::string& reason);
 
+  /// As include, for a file that `keyword` names and whose text isn't read (Deck::unread_files): it belongs to the deck all the same.
+  std::uint32_t include_unread(std::uint32_t from, const std::string& name, std::span<const std::filesystem::path> folders,
+                               const std::string& keyword, std::string& reason);
+  /// Notes a companion file (Deck::companions). False: it can't be found; `reason` gets why.
+  bool accompany(const std::string& name, std::span<const std::filesystem::path> folders, std::string& reason);
+
   std::filesystem::path folder_of(std::uint32_t file) const { return files[file].path.parent_path(); }
 
-  std::vector<SourceFile> files;     ///< main file first, includes in the order they are first named
-  std::vector<std::string> missing;  ///< names of includes that weren't found, as written
+  std::vector<SourceFile> files;          ///< main file first, includes in the order they are first named
+  std::vector<std::string> missing;       ///< names of includes that weren't found, as written
+  std::vector<UnreadFile> unread;         ///< each once
+  std::vector<CompanionFile> companions;  ///< each once
 
  private:
   FileSet(std::filesystem::path main, FileBytes bytes, StandIns stand_ins);
+  std::filesystem::path relative_name(const std::filesystem::path& found, const std::string& name) const;
   std::uint32_t open(const std::filesystem::path& found, const std::string& name, std::string& reason);
 
   StandIns stand_ins_;
   std::filesystem::path main_folder_;
   std::size_t unpacked_bytes_ = 0;  ///< of all packed files
   std::map<std::string, std::uint32_t> by_canonical_;
+  std::set<std::string> accompanying_;                                                            ///< canonical names of companions
   std::map<std::pair<std::uint32_t, std::string>, std::pair<std::uint32_t, std::string>> known_;  ///< file or reason, by who names it
 };
 

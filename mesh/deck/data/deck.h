@@ -16,6 +16,7 @@
 #include "base/hash.h"
 #include "base/units.h"
 #include "mesh/deck/data/frame.h"
+#include "mesh/deck/data/taken_ids.h"
 #include "mesh/model/model.h"
 #include "mesh/model/references.h"
 
@@ -58,6 +59,18 @@ struct SourceFile {
   std::filesystem::path path;      ///< as opened
   std::filesystem::path relative;  ///< to the main file's folder; the main file: its name. May start with ".."
   FileBytes bytes;
+};
+
+/// A file that a card names and that isn't deck text: a table, a curve, results of another run. Saving elsewhere copies it.
+struct CompanionFile {
+  std::filesystem::path path;      ///< as found
+  std::filesystem::path relative;  ///< as SourceFile::relative
+};
+
+/// A file with text for the solver that isn't read, though it may hold nodes and elements.
+struct UnreadFile {
+  std::uint32_t file = 0;  ///< index into files
+  std::string keyword;     ///< of the first card that names it
 };
 
 /// What is added to the ids in a file's text to get those of the model (LS-DYNA's *INCLUDE_TRANSFORM, Radioss's //SUBMODEL). Includes what
@@ -130,6 +143,9 @@ struct Deck {
   std::shared_ptr<const References> references;                   ///< cards that name entities; never null after opening
   TimeStepControl time_step;
   std::optional<LengthUnit> length_unit;  ///< nullopt: the deck doesn't give it
+  TakenIds taken;                         ///< united
+  std::vector<CompanionFile> companions;
+  std::vector<UnreadFile> unread_files;
   std::vector<Warning> warnings;
   std::vector<std::string> missing_files;  ///< includes that weren't found, as written
   std::shared_ptr<OnDisk> on_disk;         ///< never null after opening

@@ -33,7 +33,10 @@ std::optional<Error> DeletionCheck::named_by_card(Referred referred, std::int64_
 std::optional<Error> DeletionCheck::named_unseen(const std::string& what) const {
   for (const UnreadText& unread : deck_.references->unread())
     if (unread.encrypted)
-      return error_at(deck_, unread.file, unread.begin, what + " can't be removed: the encrypted text here may name it");
+      return error_at(
+          deck_, unread.file, unread.begin,
+          what + " can't be removed: " +
+              (unread.keyword.starts_with("INCLUDE") ? "this file isn't read, and may name it" : "the encrypted text here may name it"));
   if (!deck_.missing_files.empty())
     return Error{deck_.files[0].path.string(), 0,
                  what + " can't be removed: the include file " + deck_.missing_files.front() + " isn't there, and may name it"};

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <limits>
 
+#include "base/letter_case.h"
 #include "mesh/deck/editing/ancestors.h"
 #include "mesh/deck/formats/formats.h"
+#include "mesh/deck/text/number.h"
 
 namespace prismesh::mesh::deck {
 namespace {
@@ -12,6 +14,9 @@ namespace {
 constexpr std::int64_t kMaxId = std::numeric_limits<std::int64_t>::max();
 /// Steps of one search over taken ids and ranges: more than any deck has blocks of ids.
 constexpr int kMaxSteps = 200'000;
+
+/// Columns between the numbers of a range in unread text: more than two fields.
+constexpr std::size_t kMaxBetween = 40;
 
 /// The first id from `id` on that isn't in the index. Searches consecutive ids by bisection.
 std::int64_t beyond_block(const IdIndex& index, std::int64_t id) {
@@ -35,7 +40,15 @@ std::int64_t beyond(const Reference& reference, std::int64_t id) {
   return last == kMaxId ? kMaxId : last + 1;
 }
 
-void gather_numbers(std::string_view text, std::vector<std::int64_t>& numbers) {
+/// "THRU" or "TO" between two numbers.
+bool is_range_word(std::string_view between) {
+  between = trim(between);
+  return between.size() >= 2 && between.size() <= 4 && (upper(between) == "THRU" || upper(between) == "THR" || upper(between) == "TO");
+}
+
+/// Every whole number in the text, and the ranges "a THRU b".
+void gather_numbers(std::string_view text, std::vector<std::int64_t>& numbers, std::vector<IdRange>& ranges) {
+  std::size_t last_end = 0;
   for (std::size_t at = 0; at < text.size();) {
     if (text[at] < '0' || text[at] > '9') {
       ++at;
@@ -43,9 +56,15 @@ void gather_numbers(std::string_view text, std::vector<std::int64_t>& numbers) {
     }
     std::int64_t value = 0;
     std::size_t digits = 0;
+    const std::size_t begin = at;
     for (; at < text.size() && text[at] >= '0' && text[at] <= '9'; ++at)
       if (++digits <= 18) value = value * 10 + (text[at] - '0');
-    if (digits <= 18 && value > 0 && (numbers.empty() || numbers.back() != value)) numbers.push_back(value);
+    if (digits <= 18 && value > 0 && (numbers.empty() || numbers.back() != value)) {
+      if (!numbers.empty() && begin - last_end <= kMaxBetween && is_range_word(text.substr(last_end, begin - last_end)))
+        ranges.push_back({numbers.back(), value});
+      numbers.push_back(value);
+    }
+    last_end = at;
   }
 }
 
@@ -146,7 +165,10 @@ std::optional<std::int64_t> NewIds::first_free(const IdSearch& search, std::int6
 }
 
 std::int64_t NewIds::beyond_taken(Referred referred, std::int64_t id) {
-  if (referred == Referred::node) {
+  const bool is_node = referred == Referred::node;
+  if (const IdRange* taken = range_with(is_node ? deck_.taken.nodes : deck_.taken.elements, id); taken != nullptr)
+    return taken->last == kMaxId ? kMaxId : taken->last + 1;
+  if (is_node) {
     id = beyond_block(*model_.node_index, id);
   } else {
     // Some formats number all elements together.
@@ -191,10 +213,12 @@ bool NewIds::named_in_unread(std::int64_t id) {
     unread_numbers_.emplace();
     for (const UnreadText& unread : deck_.references->unread())
       if (!unread.encrypted)
-        gather_numbers(deck_.files[unread.file].bytes.text().substr(unread.begin, unread.end - unread.begin), *unread_numbers_);
+        gather_numbers(deck_.files[unread.file].bytes.text().substr(unread.begin, unread.end - unread.begin), *unread_numbers_,
+                       unread_ranges_);
+    unite(unread_ranges_);
     std::sort(unread_numbers_->begin(), unread_numbers_->end());
   }
-  return std::binary_search(unread_numbers_->begin(), unread_numbers_->end(), id);
+  return std::binary_search(unread_numbers_->begin(), unread_numbers_->end(), id) || range_with(unread_ranges_, id) != nullptr;
 }
 
 }  // namespace prismesh::mesh::deck

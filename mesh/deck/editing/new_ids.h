@@ -18,7 +18,8 @@ namespace prismesh::mesh::deck {
 bool all_named_by(const References& references, Referred referred, std::span<const std::int64_t> parents, std::uint32_t referrer);
 
 /// Chooses free ids one after the other. The same deck, model and order of calls give the same ids.
-/// An id is free for a new node or shell if no node (for a shell: no element) has or had it, no card names it, read or unread, and every
+/// An id is free for a new node or shell if no node (for a shell: no element) has or had it, nothing else of the deck takes it
+/// (Deck::taken), no card names it, read or unread, and every
 /// range of ids (GENERATE, THRU) that holds it also holds all that the new one comes from. It fits the fields of the file's cards.
 /// In this order: an id within the ranges that hold all that the new one comes from; the next id after the file's own; the lowest free id.
 class NewIds {
@@ -52,6 +53,7 @@ class NewIds {
   std::vector<IdIndex> other_elements_;
   std::int64_t largest_in_shells_ = 0;
   std::optional<std::vector<std::int64_t>> unread_numbers_;          ///< ascending; gathered when first asked for
+  std::vector<IdRange> unread_ranges_;                               ///< "a THRU b" in unread text; united
   std::map<std::pair<Referred, std::uint32_t>, std::int64_t> next_;  ///< by file: the next id after its own
   std::map<Referred, std::int64_t> lowest_;                          ///< ids below are taken
   std::map<Referred, std::vector<std::int64_t>> given_;              ///< ascending

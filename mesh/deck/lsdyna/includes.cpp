@@ -12,11 +12,6 @@ namespace {
 constexpr std::size_t kMaxNameLength = 4096;
 constexpr std::size_t kMaxPaths = 100;
 
-/// Whether a name goes on in the next line.
-bool goes_on(std::string_view part) {
-  return part.size() >= 2 && part.back() == '+' && (part[part.size() - 2] == ' ' || part[part.size() - 2] == '\t');
-}
-
 /// Decks from Windows have backslashes between folders.
 std::string with_slashes(std::string name) {
   std::replace(name.begin(), name.end(), '\\', '/');
@@ -25,20 +20,24 @@ std::string with_slashes(std::string name) {
 
 }  // namespace
 
+bool name_goes_on(std::string_view part) {
+  return part.size() >= 2 && part.back() == '+' && (part[part.size() - 2] == ' ' || part[part.size() - 2] == '\t');
+}
+
 std::vector<IncludeName> include_names(std::string_view text, const Block& block, bool only_first) {
   std::vector<IncludeName> names;
   Lines lines(text, block.begin, block.end);
   Line line;
-  bool name_goes_on = false;
+  bool is_open = false;
   while (lines.next(line)) {
     std::string_view part = trim(line.text);
     if (part.empty()) continue;
-    if (!name_goes_on) {
+    if (!is_open) {
       if (only_first && !names.empty()) break;
       names.push_back({{}, line.offset});
     }
-    name_goes_on = goes_on(part);
-    if (name_goes_on) part = trim(part.substr(0, part.size() - 1));
+    is_open = name_goes_on(part);
+    if (is_open) part = trim(part.substr(0, part.size() - 1));
     std::string& name = names.back().name;
     if (name.size() + part.size() <= kMaxNameLength) name += part;
   }
@@ -127,7 +126,7 @@ IncludeTransform read_transform(std::string_view text, const Block& block, const
   bool in_name = true;
   for (int number = 0; lines.next(line);) {
     if (in_name) {
-      in_name = goes_on(trim(line.text)) || trim(line.text).empty();
+      in_name = name_goes_on(trim(line.text)) || trim(line.text).empty();
       continue;
     }
     card.cut(line.text, block.columns);

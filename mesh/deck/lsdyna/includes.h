@@ -20,6 +20,9 @@ struct IncludeName {
   std::size_t offset = 0;  ///< of its line
 };
 
+/// Whether a file's name goes on in the next line: `part` (trimmed) ends with a blank and a plus.
+bool name_goes_on(std::string_view part);
+
 /// The names in an *INCLUDE or *INCLUDE_PATH block. A line that ends in " +" goes on in the next. `only_first`: the block has one name,
 /// then other cards.
 std::vector<IncludeName> include_names(std::string_view text, const Block& block, bool only_first);

@@ -30,8 +30,11 @@ std::optional<DeckContents> read_once(Walk& walk, Watch& watch) {
     found.frames = include_frames(walk.contexts, walk.transformations, found.cards, walk.warnings);
     for (const IncludeContext& context : walk.contexts) found.id_offsets.push_back(context.offsets);
   }
+  found.taken = walk.generated.finish(largest_ids(found.cards));
   found.references = walk.references.finish(found.files);
   found.missing_files = std::move(walk.files.missing);
+  found.companions = std::move(walk.files.companions);
+  found.unread_files = std::move(walk.files.unread);
   found.time_step = walk.definitions.time_step();
   found.parts = walk.definitions.parts();
   found.warnings = std::move(walk.warnings);

@@ -1,9 +1,11 @@
 #include "mesh/deck/lsdyna/walk.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "mesh/deck/assembly/read_pieces.h"
+#include "mesh/deck/lsdyna/companion_files.h"
 #include "mesh/deck/text/number.h"
 
 namespace prismesh::mesh::deck::lsdyna {
@@ -66,7 +68,12 @@ void Walk::read_block(const Visit& visit, const Block& block, Columns columns) {
   const std::string_view text = files.files[visit.file].bytes.text();
   const std::string_view name = block.name;
   references.read(visit.file, block, parameters_, contexts[visit.context].offsets);
-  if (const std::optional<CardForm> form = card_form(name)) {
+  const std::optional<CardForm> form = card_form(name);
+  if (!form) {
+    generated.read(text, block, parameters_);
+    find_companions(visit, block);
+  }
+  if (form) {
     add_mesh(visit, block, *form);
   } else if (name.starts_with("INCLUDE")) {
     include(visit, block, columns);
@@ -192,21 +199,44 @@ void Walk::include_transformed(const Visit& from, const Block& block, Columns co
   for (const IncludeName& name : include_names(text, block, true)) include_one(from, name, columns, index);
 }
 
-/// Keeps the files of *INCLUDE keywords that aren't read: they belong to the deck too.
+/// Keeps the files of *INCLUDE keywords that aren't read: they belong to the deck too. Those of some become part of the mesh; those of the
+/// others are only looked into for something else.
 void Walk::keep_unread(const Visit& from, const Block& block) {
   const std::string_view kind = std::string_view(block.name).substr(std::string_view("INCLUDE").size());
   warnings.note_each("unread-include", from.file, block.keyword, "*" + block.name + " isn't read in this version; it is kept as it is");
-  // Only these begin with a file's name.
-  if (kind != "_NASTRAN" && kind != "_BINARY" && kind != "_TRIM" && kind != "_AUTO_OFFSET" && !kind.starts_with("_STAMPED")) return;
-  for (const IncludeName& name : include_names(files.files[from.file].bytes.text(), block, true)) {
+  if (kind == "_COMPENSATION_SYMMETRIC_LINES") return;  // names no file
+  static constexpr std::string_view kOfMesh[] = {"_NASTRAN", "_BINARY", "_TRANSFORM_BINARY", "_AUTO_OFFSET", "_AUTO_OFFSET_USER",
+                                                 "_ISPG",    "_EFV",    "_RADIOSS"};
+  const bool is_mesh = std::find(std::begin(kOfMesh), std::end(kOfMesh), kind) != std::end(kOfMesh);
+  const bool has_number_first = kind.starts_with("_MULTISCALE");
+  std::vector<IncludeName> names = include_names(files.files[from.file].bytes.text(), block, !has_number_first);
+  if (has_number_first) names = names.size() > 1 ? std::vector(names.begin() + 1, names.begin() + 2) : std::vector<IncludeName>();
+  for (const IncludeName& name : names) {
+    if (!is_mesh) {
+      accompany(from, block, name.name, name.offset, true);
+      continue;
+    }
     std::string reason;
-    const std::uint32_t file = files.include(from.file, name.name, search_.folders(files.folder_of(from.file)), reason);
+    const std::uint32_t file = files.include_unread(from.file, name.name, search_.folders(files.folder_of(from.file)), block.name, reason);
     states_.resize(files.files.size());
     if (file == FileSet::kNoFile)
       warnings.note_each("missing-include", from.file, name.offset, "the include file " + name.name + " " + reason);
     else
       ++states_[file].uses;
   }
+}
+
+void Walk::find_companions(const Visit& from, const Block& block) {
+  for (const NamedFile& named : named_files(files.files[from.file].bytes.text(), block))
+    accompany(from, block, named.name, named.offset, named.is_certain);
+}
+
+/// Notes a file that a card names, or may name.
+void Walk::accompany(const Visit& from, const Block& block, const std::string& name, std::size_t offset, bool is_certain) {
+  std::string reason;
+  const std::string spelled = parameters_.put_into_text(name);
+  if (files.accompany(spelled, search_.folders(files.folder_of(from.file)), reason) || !is_certain) return;
+  warnings.note_each("missing-file", from.file, offset, "the file " + name + ", which *" + block.name + " names, " + reason);
 }
 
 /// A file that is shown at several places costs its size several times. The limits prevent a short deck from taking gigabytes.

@@ -13,6 +13,7 @@
 #include "mesh/deck/assembly/warnings.h"
 #include "mesh/deck/data/deck.h"
 #include "mesh/deck/lsdyna/definitions.h"
+#include "mesh/deck/lsdyna/generated_ids.h"
 #include "mesh/deck/lsdyna/includes.h"
 #include "mesh/deck/lsdyna/mesh_cards.h"
 #include "mesh/deck/lsdyna/references.h"
@@ -33,6 +34,7 @@ class Walk {
   std::vector<IncludeContext> contexts{IncludeContext()};  ///< what the segments' `frame` indexes; [0]: the main file's
   Transformations transformations;
   Definitions definitions;
+  GeneratedIds generated;
   ReferenceReader references;  ///< finish() it once the walk is done
   Warnings warnings;
 
@@ -54,6 +56,8 @@ class Walk {
   void include_transformed(const Visit& from, const Block& block, Columns columns);
   void include_one(const Visit& from, const IncludeName& name, Columns columns, std::uint32_t context);
   void keep_unread(const Visit& from, const Block& block);
+  void find_companions(const Visit& from, const Block& block);
+  void accompany(const Visit& from, const Block& block, const std::string& name, std::size_t offset, bool is_certain);
   bool may_walk_again(std::uint32_t file);
 
   bool cut_out_encrypted_;

@@ -10,20 +10,59 @@ namespace {
 /// Entries that define properties of elements. A card may define several: PELAS two.
 struct PropertyForm {
   std::string_view name;
+  PropertyFamily family;
   std::uint8_t every = 0;     ///< data fields from one property to the next on a card; 0: one a card
   std::uint8_t material = 0;  ///< data field; 0: none
   std::uint8_t thickness = 0;
 };
 
+using Family = PropertyFamily;
+
 constexpr PropertyForm kPropertyForms[] = {
-    {"PSHELL", 0, 1, 2},  {"PCOMP", 0, 0, 0},  {"PCOMPG", 0, 0, 0},  {"PCOMPP", 0, 0, 0}, {"PSHEAR", 0, 1, 2},  {"PSOLID", 0, 1, 0},
-    {"PLSOLID", 0, 1, 0}, {"PCOMPS", 0, 0, 0}, {"PLPLANE", 0, 1, 0}, {"PPLANE", 0, 1, 2}, {"PBAR", 0, 1, 0},    {"PBARL", 0, 1, 0},
-    {"PBEAM", 0, 1, 0},   {"PBEAML", 0, 1, 0}, {"PBCOMP", 0, 1, 0},  {"PBEND", 0, 1, 0},  {"PBMSECT", 0, 1, 0}, {"PBRSECT", 0, 1, 0},
-    {"PBEAM3", 0, 1, 0},  {"PROD", 0, 1, 0},   {"PTUBE", 0, 1, 0},   {"PBUSH", 0, 0, 0},  {"PBUSH1D", 0, 0, 0}, {"PBUSH2D", 0, 0, 0},
-    {"PBUSHT", 0, 0, 0},  {"PELAS", 4, 0, 0},  {"PDAMP", 2, 0, 0},   {"PDAMP5", 0, 0, 0}, {"PMASS", 2, 0, 0},   {"PVISC", 4, 0, 0},
-    {"PGAP", 0, 0, 0},    {"PWELD", 0, 1, 0},  {"PFAST", 0, 0, 0},   {"PSEAM", 0, 1, 0},  {"PCONT", 0, 0, 0},   {"PAXI", 0, 1, 0},
-    {"PTRIX", 0, 1, 0},
+    {"PSHELL", Family::shell, 0, 1, 2},
+    {"PCOMP", Family::shell},
+    {"PCOMPG", Family::shell},
+    {"PCOMPP", Family::shell},
+    {"PSHEAR", Family::shear, 0, 1, 2},
+    {"PSOLID", Family::solid, 0, 1},
+    {"PLSOLID", Family::solid, 0, 1},
+    {"PCOMPS", Family::solid},
+    {"PLPLANE", Family::plane, 0, 1},
+    {"PPLANE", Family::plane, 0, 1, 2},
+    {"PBAR", Family::bar, 0, 1},
+    {"PBARL", Family::bar, 0, 1},
+    {"PBRSECT", Family::bar, 0, 1},
+    {"PBEAM", Family::beam, 0, 1},
+    {"PBEAML", Family::beam, 0, 1},
+    {"PBCOMP", Family::beam, 0, 1},
+    {"PBMSECT", Family::beam, 0, 1},
+    {"PBEND", Family::bend, 0, 1},
+    {"PBEAM3", Family::beam3, 0, 1},
+    {"PROD", Family::rod, 0, 1},
+    {"PTUBE", Family::tube, 0, 1},
+    {"PBUSH", Family::bush},
+    {"PBUSH1D", Family::bush1d},
+    {"PBUSH2D", Family::bush2d},
+    {"PELAS", Family::spring, 4},
+    {"PDAMP", Family::damper, 2},
+    {"PDAMP5", Family::damper},
+    {"PMASS", Family::mass, 2},
+    {"PVISC", Family::viscous, 4},
+    {"PGAP", Family::gap},
+    {"PWELD", Family::weld, 0, 1},
+    {"PFAST", Family::weld},
+    {"PSEAM", Family::weld, 0, 1},
+    {"PCONT", Family::contact},
+    {"PAXI", Family::axisymmetric, 0, 1},
+    {"PTRIX", Family::axisymmetric, 0, 1},
 };
+
+/// Entries that complete a property with the same number and name nothing else: tables of stiffness and damping, nonlinear behaviour.
+constexpr std::string_view kCompanions[] = {"PBUSHT", "PELAST", "PDAMPT", "PSHLN1", "PSHLN2", "PSLDN1", "PBARN1", "PBEMN1", "PRODN1"};
+
+bool is_companion(std::string_view name) {
+  return std::find(std::begin(kCompanions), std::end(kCompanions), name) != std::end(kCompanions);
+}
 
 const PropertyForm* form_of(std::string_view name) {
   const auto at =
@@ -160,12 +199,14 @@ bool Definitions::read(const Card& card, std::size_t offset) {
   const std::string_view name = card.name();
   if (name.empty() || (name[0] != 'P' && name[0] != 'M')) return false;
   if (name[0] == 'M') return read_material(card, materials);
+  if (is_companion(name)) return true;
   const PropertyForm* form = form_of(name);
   if (!form) return false;
   for (std::size_t first = 0; first < std::max<std::size_t>(form->every ? std::min<std::size_t>(card.size(), 8) : 1, 1);
        first += std::max<std::size_t>(form->every, 1)) {
     Property property;
     property.id = card.integer_or_zero(first);
+    property.family = form->family;
     property.offset = offset;
     if (property.id <= 0) continue;
     if (form->material && card.integer_or_zero(form->material) > 0) property.material = card.integer_or_zero(form->material);
@@ -209,11 +250,12 @@ void Definitions::read_comment(std::string_view line) {
     if (std::string name = name_in(rest); !name.empty()) names.emplace_back(id, std::move(name));
 }
 
-bool PartTable::add(const Property& property) { return !properties_.try_emplace(property.id, property).second; }
+bool PartTable::add(const Property& property) { return !properties_.try_emplace({property.id, property.family}, property).second; }
 
 std::optional<double> PartTable::thickness_of(std::int64_t property) const {
-  const auto at = properties_.find(property);
-  return at == properties_.end() ? std::nullopt : at->second.thickness;
+  const auto at = properties_.lower_bound({property, PropertyFamily::shell});
+  const bool is_of_shells = at != properties_.end() && at->first.first == property && at->first.second <= PropertyFamily::plane;
+  return is_of_shells ? at->second.thickness : std::nullopt;
 }
 
 /// A laminate has the density of all its plies, and a stiffness only where all are of one isotropic material.
@@ -247,7 +289,9 @@ void PartTable::put_in(const Property& property, Part& part) const {
 
 std::vector<Part> PartTable::parts() const {
   std::vector<Part> out;
-  for (const auto& [id, property] : properties_) {
+  for (const auto& [key, property] : properties_) {
+    const std::int64_t id = key.first;
+    if (!out.empty() && out.back().id == id) continue;
     Part part;
     part.id = id;
     part.defined = true;

@@ -19,8 +19,35 @@ struct Ply {
   double thickness = 0;
 };
 
+/// The elements that a property is for. Properties of different families may have one number: the element's type tells which is meant.
+/// Where one part has several, the first of these families counts: shells are what is shown and weighed.
+enum class PropertyFamily : std::uint8_t {
+  shell,
+  plane,
+  solid,
+  shear,
+  bar,
+  beam,
+  bend,
+  beam3,
+  rod,
+  tube,
+  weld,
+  bush,
+  bush1d,
+  bush2d,
+  spring,
+  damper,
+  mass,
+  viscous,
+  gap,
+  axisymmetric,
+  contact
+};
+
 struct Property {
   std::int64_t id = 0;
+  PropertyFamily family = PropertyFamily::shell;
   std::size_t offset = 0;
   std::optional<std::int64_t> material;
   std::optional<double> thickness;
@@ -55,18 +82,19 @@ struct Definitions {
 /// All pieces' definitions together.
 class PartTable {
  public:
-  /// Of equal ids the first counts. True: there was a property with this id before.
+  /// Of equal ids of a family the first counts. True: the family had a property with this id before.
   bool add(const Property& property);
   void add(const Material& material) { materials_.try_emplace(material.id, material); }
   void add_name(std::int64_t id, const std::string& name) { names_.try_emplace(id, name); }
 
   std::vector<Part> parts() const;
+  /// Of a property of shells.
   std::optional<double> thickness_of(std::int64_t property) const;
 
  private:
   void put_in(const Property& property, Part& part) const;
 
-  std::map<std::int64_t, Property> properties_;
+  std::map<std::pair<std::int64_t, PropertyFamily>, Property> properties_;
   std::map<std::int64_t, Material> materials_;
   std::map<std::int64_t, std::string> names_;
 };

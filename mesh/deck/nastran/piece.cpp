@@ -24,6 +24,34 @@ void read_scalar_points(const Card& card, std::vector<IdRange>& points) {
   }
 }
 
+/// CELAS3, CELAS4 and their like name scalar points, which then need no card of their own. The 4 kinds may have two elements on a card.
+void read_unlisted_points(const Card& card, std::vector<IdRange>& points) {
+  for (const std::size_t f : {2, 3, 6, 7})
+    if (const std::int64_t id = card.integer_or_zero(f); id > 0) points.push_back({id, id});
+}
+
+/// CAERO1 to CAERO5 and ZAERO's CAERO7 and BODY7; other cards are passed over.
+void read_panel(const Card& card, std::vector<AeroPanel>& panels) {
+  const std::string_view name = card.name();
+  AeroPanel panel{card.integer_or_zero(0), card.integer_or_zero(3), 1, 0, 0};
+  if (name == "CAERO1" || name == "CAERO7" || name == "BODY7") {
+    panel.chords = card.integer_or_zero(4);
+    panel.span_list = card.integer_or_zero(5);
+    panel.chord_list = card.integer_or_zero(6);
+  } else if (name == "CAERO2") {
+    panel.chords = card.integer_or_zero(4);
+    panel.span_list = card.integer_or_zero(5);
+    panel.chord_list = card.integer_or_zero(6);
+  } else if (name == "CAERO3") {
+    panel = {panel.id, 0, 0, card.integer_or_zero(3), card.integer_or_zero(4)};
+  } else if (name == "CAERO4" || name == "CAERO5") {
+    panel.span_list = card.integer_or_zero(4);
+  } else {
+    return;
+  }
+  if (panel.id > 0) panels.push_back(panel);
+}
+
 /// Coordinate systems. False: the card is none.
 bool read_system_card(const EntryCard& card, PieceTarget& target) {
   std::vector<SystemCard>& systems = target.facts.systems;
@@ -62,6 +90,10 @@ bool read_other(const EntryCard& card, PieceTarget& target) {
     facts.grid_default.emplace_back(offset, system < 0 || system > kMaxSystem ? 0 : system);
   } else if (name == "SPOINT" || name == "EPOINT") {
     read_scalar_points(card.fields, facts.scalar_points);
+  } else if (name == "AEFACT") {
+    std::int64_t factors = 0;
+    for (std::size_t f = 1; f < card.fields.size(); ++f) factors += card.fields.blank(f) ? 0 : 1;
+    facts.factor_lists.emplace_back(card.fields.integer_or_zero(0), factors);
   } else if (is_old_element(name)) {
     count_old_element(name, offset, facts);
   } else if (is_unread_element(name)) {
@@ -81,7 +113,9 @@ bool read_entry(const EntryCard& card, PieceTarget& target) {
     read_grid(card, target);
     return true;
   }
+  read_panel(card.fields, target.facts.panels);
   if (const ElementForm* form = element_form(name)) {
+    if (form->fields == NodeFields::scalar_points) read_unlisted_points(card.fields, target.facts.unlisted_points);
     read_element(card, *form, target);
     return true;
   }

@@ -39,9 +39,11 @@ struct Notice {
   std::size_t count = 1;
 };
 
-struct IdRange {
-  std::int64_t first = 0;
-  std::int64_t last = 0;
+/// A card that numbers aerodynamic boxes and their corners from its own id on. A count of 0: a list of factors gives the divisions.
+struct AeroPanel {
+  std::int64_t id = 0;
+  std::int64_t spans = 0, chords = 1;
+  std::int64_t span_list = 0, chord_list = 0;  ///< ids of AEFACT cards
 };
 
 /// What a piece says besides its nodes and elements.
@@ -49,6 +51,9 @@ struct PieceFacts {
   Definitions definitions;
   std::vector<SystemCard> systems;
   std::vector<IdRange> scalar_points;
+  std::vector<IdRange> unlisted_points;  ///< scalar points that elements name, which need no card
+  std::vector<AeroPanel> panels;
+  std::vector<std::pair<std::int64_t, std::int64_t>> factor_lists;  ///< AEFACT: id and number of factors
   std::vector<ThicknessFields> thickness;
   std::vector<std::pair<std::size_t, std::int64_t>> grid_default;                        ///< GRDSET: offset and system
   std::map<std::string, std::pair<std::size_t, std::size_t>, std::less<>> old_elements;  ///< first offset and count, by name

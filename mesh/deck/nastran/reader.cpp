@@ -72,6 +72,8 @@ Result<DeckContents> read(FileSet files, Watch& watch) {
   found.format = Format::nastran;
   found.files = std::move(walk.files.files);
   found.missing_files = std::move(walk.files.missing);
+  found.companions = std::move(walk.files.companions);
+  found.unread_files = std::move(walk.files.unread);
   found.warnings = std::move(walk.warnings);
   std::vector<PieceFacts> facts(walk.pieces.size());
   const auto read_one = [&](std::size_t p) {
@@ -91,6 +93,7 @@ Result<DeckContents> read(FileSet files, Watch& watch) {
   settle_frames(found, facts);
   found.references = walk.references.finish();
   settle_scalar_points(found, facts);
+  settle_taken_ids(found, facts);
   PartTable table;
   settle_parts(found, facts, table);
   settle_thickness(found, facts, table);

@@ -127,28 +127,19 @@ void settle_frames(DeckContents& found, std::span<PieceFacts> facts) {
 
 namespace {
 
+constexpr std::int64_t kMaxDivisions = 1000;  ///< of an aerodynamic panel in one direction
+
 class ScalarPoints {
  public:
   explicit ScalarPoints(std::span<const PieceFacts> facts) {
     for (const PieceFacts& some : facts) ranges_.insert(ranges_.end(), some.scalar_points.begin(), some.scalar_points.end());
-    std::erase_if(ranges_, [](const IdRange& range) { return range.last < range.first; });
-    std::sort(ranges_.begin(), ranges_.end(), [](const IdRange& a, const IdRange& b) { return a.first < b.first; });
-    // Ranges that touch become one, so that it holds consecutive ids together.
-    std::size_t out = 0;
-    for (std::size_t r = 1; r < ranges_.size(); ++r) {
-      if (ranges_[r].first - 1 <= ranges_[out].last)
-        ranges_[out].last = std::max(ranges_[out].last, ranges_[r].last);
-      else
-        ranges_[++out] = ranges_[r];
-    }
-    ranges_.resize(std::min(ranges_.size(), out + 1));
+    unite(ranges_);
   }
   bool empty() const { return ranges_.empty(); }
   /// Whether all of them lie in one range.
   bool has(std::int64_t first, std::int64_t last) const {
-    const auto after =
-        std::upper_bound(ranges_.begin(), ranges_.end(), first, [](std::int64_t value, const IdRange& r) { return value < r.first; });
-    return after != ranges_.begin() && last <= std::prev(after)->last;
+    const IdRange* range = range_with(ranges_, first);
+    return range != nullptr && last <= range->last;
   }
   /// Calls `keep(first, last)` for each part of a range of ids without scalar points.
   template <class Keep>
@@ -202,6 +193,28 @@ void settle_scalar_points(DeckContents& found, std::span<PieceFacts> facts) {
       }
       elements.nodes = std::move(nodes);
       elements.first_node = std::move(first);
+    }
+}
+
+void settle_taken_ids(DeckContents& found, std::span<const PieceFacts> facts) {
+  std::unordered_map<std::int64_t, std::int64_t> factors;
+  for (const PieceFacts& some : facts) {
+    found.taken.nodes.insert(found.taken.nodes.end(), some.scalar_points.begin(), some.scalar_points.end());
+    found.taken.nodes.insert(found.taken.nodes.end(), some.unlisted_points.begin(), some.unlisted_points.end());
+    factors.insert(some.factor_lists.begin(), some.factor_lists.end());
+  }
+  // N factors divide into N - 1 boxes. A list that isn't there counts as one of very many.
+  const auto divisions = [&](std::int64_t count, std::int64_t list) {
+    if (count > 0) return std::min(count, kMaxDivisions);
+    const auto given = factors.find(list);
+    return given == factors.end() ? kMaxDivisions : std::clamp<std::int64_t>(given->second, 1, kMaxDivisions);
+  };
+  for (const PieceFacts& some : facts)
+    for (const AeroPanel& panel : some.panels) {
+      const std::int64_t corners = (divisions(panel.spans, panel.span_list) + 1) * (divisions(panel.chords, panel.chord_list) + 1);
+      const IdRange range{panel.id, panel.id + corners - 1};
+      found.taken.nodes.push_back(range);
+      found.taken.elements.push_back(range);
     }
 }
 

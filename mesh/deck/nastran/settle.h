@@ -16,6 +16,10 @@ void settle_frames(DeckContents& found, std::span<PieceFacts> facts);
 /// Removes scalar points from elements' nodes and from what cards name: they have no coordinates.
 void settle_scalar_points(DeckContents& found, std::span<PieceFacts> facts);
 
+/// Fills found.taken by scalar points and aerodynamic boxes. The solvers differ in what boxes may share numbers with, so nothing new gets
+/// theirs. Source: MSC Nastran Quick Reference Guide, "SPOINT", "EPOINT", "CAERO1" to "CAERO5".
+void settle_taken_ids(DeckContents& found, std::span<const PieceFacts> facts);
+
 /// Completes corner thicknesses by those of the properties.
 void settle_thickness(DeckContents& found, std::span<const PieceFacts> facts, const PartTable& table);
 

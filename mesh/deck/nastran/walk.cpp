@@ -8,6 +8,7 @@
 #include "base/letter_case.h"
 #include "base/parallel_for.h"
 #include "mesh/deck/assembly/read_pieces.h"
+#include "mesh/deck/nastran/companion_files.h"
 #include "mesh/deck/text/number.h"
 
 namespace prismesh::mesh::deck::nastran {
@@ -172,12 +173,23 @@ void Walk::walk_file(std::uint32_t file, const std::vector<Mark>& marks, int dep
 void Walk::take(std::uint32_t file, std::size_t begin, std::size_t end) {
   if (begin >= end) return;
   const std::string_view text = files.files[file].bytes.text();
-  if (section_ == Section::control)
+  if (section_ == Section::control) {
     references.read_case_control(text, file, begin, end);
-  else if (section_ == Section::bulk)
+    find_companions(file, begin, end);
+  } else if (section_ == Section::bulk)
     cut(file, begin, end);
   else if (section_ == Section::other)
     references.read_unread("BEGIN", {file, begin, end});
+}
+
+/// The files that statements before the bulk data name: ASSIGN, and OptiStruct's LOADLIB.
+void Walk::find_companions(std::uint32_t from, std::size_t begin, std::size_t end) {
+  const std::array<fs::path, 2> folders{files.folder_of(from), files.folder_of(0)};
+  for (const NamedFile& named : named_files(files.files[from].bytes.text(), begin, end)) {
+    std::string reason;
+    if (files.accompany(named.name, folders, reason) || files.accompany(named.name + ".gz", folders, reason) || !named.is_certain) continue;
+    warnings.note_each("missing-file", from, named.offset, "the file " + named.name + ", which " + named.statement + " names, " + reason);
+  }
 }
 
 /// Cuts bulk data into pieces of about equal size, each beginning with a card.

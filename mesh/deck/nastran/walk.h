@@ -45,6 +45,7 @@ class Walk {
   void take(std::uint32_t file, std::size_t begin, std::size_t end);
   void cut(std::uint32_t file, std::size_t begin, std::size_t end);
   std::size_t include(std::uint32_t from, const Mark& mark, int depth);
+  void find_companions(std::uint32_t from, std::size_t begin, std::size_t end);
   void hold_repeated();
 
   Section section_ = Section::control;

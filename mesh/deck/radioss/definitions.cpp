@@ -126,6 +126,10 @@ std::optional<double> converted(std::optional<double> value, double factor) {
 MaterialFields material_fields(std::string_view law) {
   for (const Law& known : kLaws)
     if (law == known.name || (!known.word.empty() && law == known.word)) return known.fields;
+  // Gases of airbags and mixtures of other materials begin with something else. A user's law may as well.
+  for (const std::string_view other :
+       {"GAS", "LAW20", "BIMAT", "LAW51", "MULTIMAT", "MULTIFLUID", "LAW151", "B-K-EPS", "LAW29", "LAW30", "LAW31"})
+    if (law == other || law.starts_with("USER")) return {0, 0, 0, true, false};
   return {0, 0, 0, true};
 }
 
@@ -195,8 +199,10 @@ void Definitions::read_material(const Block& block, const Keyword& keyword, cons
     const double mass = units->mass / main->mass;
     const double length = units->length / main->length;
     const double time = units->time / main->time;
-    cards.check(1, "density of a /MAT", bad_fields_);
-    material.density = converted(cards.positive(1), mass / (length * length * length));
+    if (fields.has_density) {
+      cards.check(1, "density of a /MAT", bad_fields_);
+      material.density = converted(cards.positive(1), mass / (length * length * length));
+    }
     if (fields.youngs_modulus > 0 && (fields.card == 1 || cards.next())) {
       cards.check(fields.youngs_modulus, "modulus of a /MAT", bad_fields_);
       if (fields.poissons_ratio > 0) cards.check(fields.poissons_ratio, "Poisson's ratio of a /MAT", bad_fields_);

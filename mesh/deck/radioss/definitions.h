@@ -30,6 +30,7 @@ struct MaterialFields {
   int youngs_modulus = 0;  ///< counted in fields of one width, of which a number takes two
   int poissons_ratio = 0;
   bool limits_time_step = true;
+  bool has_density = true;  ///< in the first field of the first card
 };
 MaterialFields material_fields(std::string_view law);
 

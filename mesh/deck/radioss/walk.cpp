@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "mesh/deck/radioss/companion_files.h"
 #include "mesh/deck/text/number.h"
 
 namespace prismesh::mesh::deck::radioss {
@@ -15,6 +16,7 @@ namespace fs = std::filesystem;
 constexpr std::size_t kMaxRepeatedBytes = std::size_t{1} << 27;
 constexpr std::size_t kMaxIncludeLength = 4096;
 constexpr std::size_t kMaxContexts = 100000;
+constexpr int kMaxEngineFiles = 100;
 constexpr std::int64_t kMaxOffset = 9'999'999'999;  ///< what ten columns hold
 
 /// The next line at or after the start of a line `at` that begins with a slash or a hash; the text's size if there is none.
@@ -46,6 +48,7 @@ void Walk::run() {
   std::vector<const FileUse*> uses;
   for (const FileState& state : states_) uses.push_back(&state);
   held = repeated_files(uses);
+  find_engine_files();
 }
 
 void Walk::walk_file(std::uint32_t file, int depth) {
@@ -114,7 +117,41 @@ void Walk::finish_block() {
     begin_submodel(block_, keyword_);
   } else {
     if (keyword_.word(0) == "BEGIN") read_begin(block_);
+    find_files(block_, keyword_);
     blocks.push_back(std::move(block_));
+  }
+}
+
+/// The files that a block names besides #include.
+void Walk::find_files(const Block& block, const Keyword& keyword) {
+  const std::vector<fs::path> folders = {main_folder_, files.folder_of(block.file)};
+  std::string reason;
+  for (const NamedFile& named : named_files(files.files, block, keyword)) {
+    if (named.is_mesh) {
+      if (files.include_unread(block.file, named.name, folders, keyword.joined(), reason) == FileSet::kNoFile)
+        warnings.note_each("missing-include", block.file, named.offset, "the include file " + named.name + " " + reason);
+      else
+        warnings.note_each("unread-include", block.file, named.offset,
+                           "/" + keyword.joined() + " isn't read in this version; what the file " + named.name +
+                               " holds isn't shown and is kept as it is");
+      states_.resize(files.files.size());
+    } else if (!files.accompany(named.name, folders, reason) && named.is_certain) {
+      warnings.note_each("missing-file", block.file, named.offset,
+                         "the file " + named.name + ", which /" + keyword.joined() + " names, " + reason);
+    }
+  }
+}
+
+/// The engine's input has the starter's name with another number. The starter looks into it, and both run together.
+void Walk::find_engine_files() {
+  const std::string name = files.files[0].path.filename().string();
+  const std::size_t at = name.rfind("_0000.rad");
+  if (at == std::string::npos || at + 9 != name.size()) return;
+  const std::vector<fs::path> folders = {main_folder_};
+  std::string reason;
+  for (int run = 1; run <= kMaxEngineFiles; ++run) {
+    const std::string number = std::to_string(run);
+    if (!files.accompany(name.substr(0, at) + "_" + std::string(4 - number.size(), '0') + number + ".rad", folders, reason)) return;
   }
 }
 

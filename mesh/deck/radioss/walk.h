@@ -31,6 +31,8 @@ class Walk {
   void include(std::uint32_t file, std::size_t offset, int depth);
   void close_stretch(std::size_t end);
   void finish_block();
+  void find_files(const Block& block, const Keyword& keyword);
+  void find_engine_files();
   void begin_submodel(const Block& block, const Keyword& keyword);
   void end_submodel(std::uint32_t file, std::size_t offset);
   void read_begin(const Block& block);
