@@ -103,7 +103,7 @@ std::vector<NewIdsCase> new_ids_cases() {
        {45},
        {35}},
       {"a blank", kDyna, "*CONTROL_FORMING_BLANKMESH\n\n         3        29        19\n", {}, {}},
-      {"a part's copy", kDyna, "*PART_DUPLICATE\nPART               1        10        20        30\n", {29, 30, 59}, {19, 20, 40}},
+      {"a part's copy", kDyna, "*PART_DUPLICATE\nPART               1        10        20        30\n", {29, 59}, {19, 39}},
       // Radioss
       {"a reserve of particles", kRadioss, "/SPH/RESERVE/1\n       100\n", {29}, {19}},
   };
