@@ -179,6 +179,43 @@ TEST(SmallFiles, edits_that_are_given_up_are_kept_whatever_fails_meanwhile) {
   EXPECT_GT(refused, 0u);
 }
 
+TEST(SmallFiles, a_journal_in_the_way_of_a_save_is_kept_whatever_fails_meanwhile) {
+  const Root root;
+  const Place place{root.disk(), session_of("one_file").write_deck(root.disk())};
+  const std::string raise = R"({"edit":"translate","by":[0,0,0.5],"on":"all"})";
+  const DiskState unsaved = test::disk_state_of(root.disk());
+  fs::path in_the_way;
+  {
+    DocumentKeeper keeper = place.keeper();
+    ASSERT_TRUE(open_deck(keeper, place));
+    ASSERT_TRUE(run_step(keeper, raise));
+    ASSERT_TRUE(run_step(keeper, "save"));
+    ASSERT_TRUE(run_step(keeper, raise));
+    in_the_way = StateFolder(place.state()).journal(place.deck, keeper.document().deck->content);
+  }
+  DiskState before = test::disk_state_of(root.disk());
+  const std::string edits = before.files.at(in_the_way.string());
+  before.files[place.deck.string()] = unsaved.files.at(place.deck.string());  // given back by hand
+  std::uint64_t calls = 1, refused = 0;
+  for (std::uint64_t at = 0; at <= calls; ++at) {
+    SCOPED_TRACE("call " + std::to_string(at));
+    test::restore(before);
+    {
+      DocumentKeeper keeper = place.keeper();
+      ASSERT_TRUE(open_deck(keeper, place));
+      ASSERT_TRUE(run_step(keeper, raise));
+      test::record_file_calls(root.disk(), root.log(), {at, EIO, false, false});
+      refused += run_step(keeper, "save") ? 0 : 1;
+      if (at == 0) calls = test::counted_file_calls();
+      test::stop_recording_file_calls();
+    }
+    const DiskState after = test::disk_state_of(root.disk());
+    EXPECT_TRUE(std::any_of(after.files.begin(), after.files.end(), [&](const auto& file) { return file.second == edits; }));
+    if (HasFailure()) return;
+  }
+  EXPECT_GT(refused, 5u);
+}
+
 TEST(SmallFiles, a_changed_byte_of_the_session_opens_nothing_wrong) {
   const Root root;
   const Place place{root.disk(), session_of("one_file").write_deck(root.disk())};
