@@ -1,5 +1,6 @@
 // Saves the open document: in place, as a copy, or as another deck that becomes the document's.
 #include <algorithm>
+#include <iterator>
 
 #include "daemon/modeld/carry_over.h"
 #include "daemon/modeld/deck_files.h"
@@ -67,6 +68,11 @@ void rename_files(Document& document, const Document& other) {
 /// the result is unknown.
 Result<void> DocumentKeeper::settle_saves(const fs::path& path, std::vector<Warning>& warnings) {
   const auto warn = [&](const char* kind, std::string message) { warnings.push_back({path.string(), 0, kind, std::move(message), 1}); };
+  Result<mesh::deck::CutOffSave> cut_off = mesh::deck::settle_cut_off_save(path);
+  if (!cut_off) return fail(std::move(cut_off.error()));
+  // What it leaves unsettled is said when the deck is opened.
+  const bool is_settled = !cut_off->outcome || *cut_off->outcome == SaveOutcome::finished;
+  if (is_settled) std::move(cut_off->warnings.begin(), cut_off->warnings.end(), std::back_inserter(warnings));
   for (const fs::path& file : folder_.save_intents(path)) {
     const Result<SaveIntent> intent = read_save_intent(file);
     if (!intent) {
@@ -81,7 +87,7 @@ Result<void> DocumentKeeper::settle_saves(const fs::path& path, std::vector<Warn
     const fs::path journal = fs::path(file).replace_extension();  // "....journal.saving"
     if (*outcome == SaveOutcome::finished)
       warn("save-finished", "a save was cut off between the deck's files; the rest has been put in place now");
-    if (*outcome == SaveOutcome::mixed)
+    if (*outcome == SaveOutcome::mixed && cut_off->outcome != SaveOutcome::mixed)
       warn("save-mixed",
            "a save was cut off between the deck's files, and can't be finished since something else has changed or removed some of them: " +
                names_of(*intent));
@@ -124,6 +130,8 @@ Result<ipc::Saved> DocumentKeeper::save_copy(const std::string& path, const Prog
   if (same_file(open_->document.path, path)) return save_in_place(progress);
   const Result<fs::path> target = absolute(path);
   if (!target) return fail(target.error());
+  std::vector<Warning> of_earlier_saves;
+  if (Result<void> settled = settle_saves(*target, of_earlier_saves); !settled) return fail(std::move(settled.error()));
   const Result<mesh::deck::SaveReport> report = mesh::document::save(open_->document, *target, progress);
   if (!report) return fail(report.error());
   return report_of(*target, *report);
