@@ -133,6 +133,21 @@ Result<std::vector<FilePlan>> plan(const Deck& deck, const TextChanges& text, co
   return same_file(target, deck.files[0].path) ? plan_in_place(deck, text) : plan_elsewhere(deck, text, target);
 }
 
+/// A file of the save with what is at its target now.
+StagedSave::File found_before(const Deck& deck, const FilePlan& plan, const TextChanges& text, bool in_place) {
+  StagedSave::File file;
+  file.index = plan.file;
+  file.as_read = text.by_file[plan.file].empty();
+  if (in_place) {
+    file.found = deck.on_disk->files[plan.file].identity;
+    file.before = deck.on_disk->files[plan.file].content;
+    return file;
+  }
+  if (const Result<FileIdentity> identity = identify_file(plan.target)) file.found = *identity;
+  file.before = content_now(plan.target).value_or(kUnreadable);
+  return file;
+}
+
 std::string rounding_note(const Rounding& rounding) {
   char error[32];
   std::snprintf(error, sizeof error, "%.1e", rounding.largest_error);
@@ -207,6 +222,7 @@ Result<StagedSave> StagedSave::write(const Deck& deck, const Model& original, co
   const Result<std::vector<FilePlan>> plans = plan(deck, *text, target);
   if (!plans) return fail(plans.error());
 
+  for (const FilePlan& each : *plans) save.files_.push_back(found_before(deck, each, *text, save.in_place_));
   std::deque<std::string> packed;
   const Result<std::vector<PendingFile>> pending =
       pending_files(deck, *plans, *text, packed, part_of(progress, of_cards, before_writing - of_cards));
@@ -214,11 +230,7 @@ Result<StagedSave> StagedSave::write(const Deck& deck, const Model& original, co
   Result<StagedFiles> staged = StagedFiles::write(*pending, part_of(progress, before_writing, 1 - before_writing));
   if (!staged) return fail(std::move(staged.error()));
   save.staged_ = std::move(*staged);
-  for (std::size_t i = 0; i < plans->size(); ++i) {
-    const std::size_t file = (*plans)[i].file;
-    const Hash128 before = save.in_place_ ? deck.on_disk->files[file].content : content_now((*plans)[i].target).value_or(kUnreadable);
-    save.files_.push_back({file, before, hash128((*pending)[i].pieces), text->by_file[file].empty()});
-  }
+  for (std::size_t i = 0; i < plans->size(); ++i) save.files_[i].after = hash128((*pending)[i].pieces);
   save.rounding_ = text->rounding;
   save.report_ = report_of(deck, *text, *plans);
   for (const Warning& warning : cut_off->warnings) save.add_note("of an earlier save: " + warning.message);
@@ -261,10 +273,30 @@ Result<void> StagedSave::begin_record() {
   return {};
 }
 
+/// Before the first file is replaced. In place, files that aren't written count as well: the deck would be no longer the one that was read.
+Result<void> StagedSave::check_all() const {
+  if (in_place_)
+    for (std::size_t f = 0; f < deck_->files.size(); ++f)
+      if (Result<void> unchanged = check_unchanged(deck_->files[f], deck_->on_disk->files[f]); !unchanged) return unchanged;
+  for (std::size_t i = 0; i < files_.size(); ++i)
+    if (Result<void> same = check_target(i); !same) return fail(same.error().file, same.error().message + ", and nothing was changed");
+  return {};
+}
+
+Result<void> StagedSave::check_target(std::size_t at) const {
+  const StagedFiles::File& place = staged_.files()[at];
+  const Result<FileIdentity> now = identify_file(place.target);
+  // A copy or a touch changes the times only; the bytes decide.
+  if ((now && files_[at].found == *now) || content_now(place.target) == files_[at].before) return {};
+  return fail(place.shown.string(), "was written by another program during the save; it isn't replaced");
+}
+
 Result<void> StagedSave::put_in_place() {
   const std::lock_guard lock(deck_->on_disk->mutex);
+  if (!has_begun())
+    if (Result<void> unchanged = check_all(); !unchanged) return unchanged;
   if (Result<void> begun = begin_record(); !begun) return begun;
-  Result<void> placed = staged_.put_in_place();
+  Result<void> placed = staged_.put_in_place([&](std::size_t at) { return check_target(at); });
   if (in_place_) remember_written();
   if (record_ && (placed || !has_begun())) {
     record_->end();

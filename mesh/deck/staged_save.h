@@ -23,7 +23,8 @@ class StagedSave {
     std::size_t index = 0;  ///< in Deck::files
     Hash128 before;         ///< content of the file that will be replaced; zero: there is none
     Hash128 after;
-    bool as_read = false;  ///< the save gives the file the content that was read
+    bool as_read = false;               ///< the save gives the file the content that was read
+    std::optional<FileIdentity> found;  ///< of the file that will be replaced, before anything was written; nothing: there is none
   };
 
   /// The first step of save (mesh/deck/save.h): everything but replacing files. Before it, a save of the target that was cut off is
@@ -48,7 +49,8 @@ class StagedSave {
   /// Opens the deck as it will be once the files are in place. Only for a save to the deck's own path. Errors: those of open.
   Result<OpenedDeck> open(const Progress& progress = {}) const;
   /// Replaces the files. While there are several, a record of the save is beside the main file. After an error, another call continues.
-  /// Errors: those of StagedFiles::put_in_place and of SaveRecord::begin.
+  /// Errors: those of StagedFiles::put_in_place and of SaveRecord::begin; another program has written one of the files since the save
+  /// began, which is checked before the first is replaced, and again right before each.
   Result<void> put_in_place();
   /// Replaces the files. After an error the replaced files are given back what they held; where that can't be, the rest and the record of
   /// the save stay on disk, and the next opening of the deck finishes it. Errors: those of put_in_place.
@@ -60,6 +62,8 @@ class StagedSave {
  private:
   void remember_written();
   Result<void> begin_record();
+  Result<void> check_all() const;
+  Result<void> check_target(std::size_t at) const;
 
   const Deck* deck_ = nullptr;
   std::filesystem::path target_;
