@@ -49,9 +49,17 @@ class Descriptor {
   int fd_;
 };
 
+std::int64_t nanoseconds(const timespec& time) { return static_cast<std::int64_t>(time.tv_sec) * 1'000'000'000 + time.tv_nsec; }
+
 FileIdentity identity_of(const struct stat& status) {
   return {static_cast<std::uint64_t>(status.st_dev), static_cast<std::uint64_t>(status.st_ino), static_cast<std::uint64_t>(status.st_size),
-          static_cast<std::int64_t>(status.st_mtim.tv_sec) * 1'000'000'000 + status.st_mtim.tv_nsec};
+          nanoseconds(status.st_mtim), nanoseconds(status.st_ctim)};
+}
+
+/// Whether two identities differ at most by what a rename changes.
+bool is_same_but_for_name(FileIdentity a, const FileIdentity& b) {
+  a.changed_ns = b.changed_ns;
+  return a == b;
 }
 
 /// Fills [data, data + size) from `offset` on. 0, an errno, or -1 where the file ended early.
@@ -104,8 +112,10 @@ Result<FileBytes> read_file(const fs::path& path) {
   if (error > 0) return fail(path.string(), "can't be read: " + reason(error));
   struct stat after {};
   if (::fstat(file.get(), &after) != 0) return fail(path.string(), "can't be read: " + reason(errno));
-  if (error != 0 || identity_of(before) != identity_of(after)) return fail(path.string(), "changed while it was being read; open it again");
-  bytes.identity_ = identity_of(after);
+  // Another program may link or replace the file meanwhile: its bytes stay. Where they changed, the identity of before tells later.
+  if (error != 0 || !is_same_but_for_name(identity_of(before), identity_of(after)))
+    return fail(path.string(), "changed while it was being read; open it again");
+  bytes.identity_ = identity_of(before);
   return bytes;
 }
 
@@ -333,14 +343,19 @@ Result<StagedFiles> StagedFiles::write(std::span<const PendingFile> files, const
   return staged;
 }
 
-Result<void> StagedFiles::put_in_place() {
+Result<void> StagedFiles::put_in_place(const Check& check) {
   for (; in_place_ < files_.size(); ++in_place_) {
-    const File& file = files_[in_place_];
-    if (::rename(file.temporary.c_str(), file.target.c_str()) == 0) continue;
-    if (in_place_ == 0) return write_failure(file.shown, errno);
-    return fail(file.shown.string(), "can't be replaced: " + reason(errno) + "; " + std::to_string(in_place_) + " of " +
-                                         std::to_string(files_.size()) + " files were already replaced, the last of them " +
-                                         files_[in_place_ - 1].shown.string());
+    File& file = files_[in_place_];
+    const Result<void> checked = check ? check(in_place_) : Result<void>();
+    if (checked && ::rename(file.temporary.c_str(), file.target.c_str()) == 0) {
+      const Result<FileIdentity> now = identify_file(file.target);
+      if (now && is_same_but_for_name(*now, file.identity)) file.identity = *now;
+      continue;
+    }
+    if (in_place_ == 0) return checked ? write_failure(file.shown, errno) : checked;
+    return fail(file.shown.string(), (checked ? "can't be replaced: " + reason(errno) : checked.error().message) + "; " +
+                                         std::to_string(in_place_) + " of " + std::to_string(files_.size()) +
+                                         " files were already replaced, the last of them " + files_[in_place_ - 1].shown.string());
   }
   std::map<fs::path, fs::path> folders;
   for (const File& file : files_) folders[folder_of(file.target)] = file.target;

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -14,12 +15,13 @@
 
 namespace prismesh {
 
-/// Tells whether a file on disk is still the one that was read.
+/// Tells whether a file on disk is still the one that was read. Where it differs the bytes may still be the same.
 struct FileIdentity {
   std::uint64_t device = 0;
   std::uint64_t inode = 0;
   std::uint64_t size = 0;
   std::int64_t modified_ns = 0;
+  std::int64_t changed_ns = 0;  ///< of content, name or rights; unlike modified_ns no program can set it back
   bool operator==(const FileIdentity&) const = default;
 };
 
@@ -67,7 +69,7 @@ class StagedFiles {
     std::filesystem::path shown;      ///< the target as the caller named it
     std::filesystem::path target;     ///< the same with links resolved
     std::filesystem::path temporary;  ///< beside the target
-    FileIdentity identity;            ///< of what was written; putting it in place doesn't change it
+    FileIdentity identity;            ///< of what was written; once it is in place, of the target
   };
 
   /// Keeps an existing target's permissions and makes missing folders. A link is followed to a file, or to where one can be made: the
@@ -82,9 +84,12 @@ class StagedFiles {
 
   const std::vector<File>& files() const { return files_; }
   std::size_t in_place() const { return in_place_; }  ///< of the files, from the first on
-  /// Renames those that aren't in place yet, in order (so put the file that names the others last), and flushes the folders. After an
-  /// error it may be called again and continues. Errors: a file can't be replaced, a folder can't be flushed; how many are in place.
-  Result<void> put_in_place();
+  /// Refuses to replace the file with this index.
+  using Check = std::function<Result<void>(std::size_t)>;
+  /// Renames those that aren't in place yet, in order (so put the file that names the others last), each right after its check, and flushes
+  /// the folders. After an error it may be called again and continues. Errors: of a check, a file can't be replaced, a folder can't be
+  /// flushed; how many are in place.
+  Result<void> put_in_place(const Check& check = {});
   /// Files that aren't in place yet stay on disk beside their targets.
   void leave();
 

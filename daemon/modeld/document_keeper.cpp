@@ -6,6 +6,7 @@
 
 #include "daemon/modeld/deck_files.h"
 #include "daemon/modeld/paths.h"
+#include "daemon/modeld/retiring.h"
 #include "mesh/deck/data/deck.h"
 #include "mesh/deck/open.h"
 #include "mesh/document/deck_settings.h"
@@ -234,14 +235,12 @@ Result<void> DocumentKeeper::close(bool discard) {
 /// Closes the document and retires its journal, so that the next opening of the deck begins without these edits.
 Result<void> DocumentKeeper::let_go() {
   if (Result<void> ended = end_unfinished_save(); !ended) return ended;
-  const fs::path path = open_->journal.path();
-  const bool empty = open_->journal.records() == 0;
-  const bool lost = changed();
+  const Journal& journal = open_->journal;
   std::error_code problem;
-  if (empty)
-    fs::remove(path, problem);
-  else if (is_there(path))  // the user may have deleted it
-    if (const Result<fs::path> retired = folder_.retire(path, lost ? ".discarded" : ".closed"); !retired) return fail(retired.error());
+  if (journal.records() == 0 && journal.is_whole())
+    fs::remove(journal.path(), problem);
+  else if (Result<void> retired = retire_open(folder_, journal, changed() ? ".discarded" : ".closed"); !retired)
+    return retired;
   open_.reset();
   return {};
 }

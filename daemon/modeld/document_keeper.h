@@ -96,13 +96,15 @@ class DocumentKeeper {
 
   Result<OpenDocument> load(const ipc::Open& request, const Progress& progress);
   Result<void> settle_saves(const std::filesystem::path& path, std::vector<mesh::deck::Warning>& warnings);
-  Result<ipc::Saved> save_elsewhere(const std::filesystem::path& target, const Progress& progress);
+  Result<void> retire_obsolete(const std::filesystem::path& journal, const char* ending, std::uint64_t expected,
+                               std::vector<mesh::deck::Warning>& warnings) const;
+  Result<void> remove_intents(const std::filesystem::path& deck) const;
   Result<ipc::Saved> save_in_place(const Progress& progress);
   Result<ReadySave> make_ready(mesh::deck::StagedSave staged, const Progress& progress);
   Result<mesh::document::Document> read_again(const std::filesystem::path& path, mesh::deck::OpenedDeck opened) const;
   Result<mesh::document::Journal> begin_journal(mesh::document::Document& next) const;
   Result<void> become(const std::filesystem::path& target, const Progress& progress, ipc::Saved& saved);
-  void go_on_with(mesh::document::Document next, mesh::document::Journal journal, ipc::Saved& saved);
+  mesh::document::Journal go_on_with(mesh::document::Document next, mesh::document::Journal journal, ipc::Saved& saved);
   Result<ipc::Saved> finish_save(ReadySave save);
   void forget(ReadySave& save);
   Result<void> end_unfinished_save();

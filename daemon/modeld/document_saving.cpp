@@ -1,11 +1,12 @@
 // Saves the open document: in place, as a copy, or as another deck that becomes the document's.
 #include <algorithm>
-#include <limits>
+#include <iterator>
 
 #include "daemon/modeld/carry_over.h"
 #include "daemon/modeld/deck_files.h"
 #include "daemon/modeld/document_keeper.h"
 #include "daemon/modeld/paths.h"
+#include "daemon/modeld/retiring.h"
 #include "daemon/modeld/save_intent.h"
 #include "mesh/deck/data/deck.h"
 #include "mesh/deck/open.h"
@@ -40,12 +41,6 @@ std::string names_of(const SaveIntent& intent) {
   return names;
 }
 
-/// Number of records in a journal; the max. value if it can't be read, so that the caller keeps the file.
-std::uint64_t records_in(const fs::path& journal) {
-  const Result<JournalIntents> intents = read_intents(journal);
-  return intents ? intents->edits.size() : std::numeric_limits<std::uint64_t>::max();
-}
-
 ipc::Saved report_of(const fs::path& target, const mesh::deck::SaveReport& report) {
   return {target.string(), report.nodes_written, report.lines_changed, report.notes};
 }
@@ -53,7 +48,7 @@ ipc::Saved report_of(const fs::path& target, const mesh::deck::SaveReport& repor
 Result<Journal> start_journal(const StateFolder& folder, const fs::path& path, Document& document) {
   if (!is_there(path)) return Journal::create(path, document);
   // A journal of that name holds edits of an earlier time on a deck with the same content; they were saved or discarded since. It is kept.
-  if (const Result<fs::path> retired = folder.retire(path, ".old"); !retired) return fail(retired.error());
+  if (const Result<fs::path> retired = retire_unopened(folder, path, ".old"); !retired) return fail(retired.error());
   return Journal::create(path, document);
 }
 
@@ -73,10 +68,15 @@ void rename_files(Document& document, const Document& other) {
 /// the result is unknown.
 Result<void> DocumentKeeper::settle_saves(const fs::path& path, std::vector<Warning>& warnings) {
   const auto warn = [&](const char* kind, std::string message) { warnings.push_back({path.string(), 0, kind, std::move(message), 1}); };
+  Result<mesh::deck::CutOffSave> cut_off = mesh::deck::settle_cut_off_save(path);
+  if (!cut_off) return fail(std::move(cut_off.error()));
+  // What it leaves unsettled is said when the deck is opened.
+  const bool is_settled = !cut_off->outcome || *cut_off->outcome == SaveOutcome::finished;
+  if (is_settled) std::move(cut_off->warnings.begin(), cut_off->warnings.end(), std::back_inserter(warnings));
   for (const fs::path& file : folder_.save_intents(path)) {
     const Result<SaveIntent> intent = read_save_intent(file);
     if (!intent) {
-      const Result<fs::path> aside = folder_.retire(file, ".damaged");
+      const Result<fs::path> aside = folder_.retire(file, kDamaged);
       if (!aside) return fail(aside.error());
       warn("save-unknown", "a save was cut off, and its record is damaged (" + aside->string() +
                                "): if the deck has several files, some may be from before the save and some from after it");
@@ -87,17 +87,33 @@ Result<void> DocumentKeeper::settle_saves(const fs::path& path, std::vector<Warn
     const fs::path journal = fs::path(file).replace_extension();  // "....journal.saving"
     if (*outcome == SaveOutcome::finished)
       warn("save-finished", "a save was cut off between the deck's files; the rest has been put in place now");
-    if (*outcome == SaveOutcome::mixed)
+    if (*outcome == SaveOutcome::mixed && cut_off->outcome != SaveOutcome::mixed)
       warn("save-mixed",
            "a save was cut off between the deck's files, and can't be finished since something else has changed or removed some of them: " +
                names_of(*intent));
     const bool saved = *outcome == SaveOutcome::complete || *outcome == SaveOutcome::finished;
-    // One of the two journals is obsolete. If it holds more records than the intent says, they are later edits, and it stays.
     const fs::path obsolete = saved ? journal : folder_.journal(path, intent->deck_after);
-    if (is_there(obsolete) && records_in(obsolete) <= (saved ? intent->records : intent->records_of_next))
-      if (const Result<fs::path> retired = folder_.retire(obsolete, saved ? ".saved" : ".unused"); !retired) return fail(retired.error());
+    const std::uint64_t expected = saved ? intent->records : intent->records_of_next;
+    if (Result<void> retired = retire_obsolete(obsolete, saved ? ".saved" : ".unused", expected, warnings); !retired) return retired;
     folder_.remove(file);
   }
+  return {};
+}
+
+/// Retires one of the two journals of a save. If it holds more records than the save's record says, they are later edits, and it stays.
+Result<void> DocumentKeeper::retire_obsolete(const fs::path& journal, const char* ending, std::uint64_t expected,
+                                             std::vector<Warning>& warnings) const {
+  if (!is_there(journal)) return {};
+  const std::optional<std::uint64_t> records = records_in(journal);
+  if (records && *records > expected) return {};
+  const Result<fs::path> retired = folder_.retire(journal, records ? ending : kDamaged);
+  if (!retired) return fail(retired.error());
+  if (!records)
+    warnings.push_back({retired->string(), 0, "damaged-journal",
+                        "this journal belongs to the deck before or after a save that was cut off, and can't be read to its end; it isn't "
+                        "used, and is kept as " +
+                            retired->string(),
+                        1});
   return {};
 }
 
@@ -114,6 +130,8 @@ Result<ipc::Saved> DocumentKeeper::save_copy(const std::string& path, const Prog
   if (same_file(open_->document.path, path)) return save_in_place(progress);
   const Result<fs::path> target = absolute(path);
   if (!target) return fail(target.error());
+  std::vector<Warning> of_earlier_saves;
+  if (Result<void> settled = settle_saves(*target, of_earlier_saves); !settled) return fail(std::move(settled.error()));
   const Result<mesh::deck::SaveReport> report = mesh::document::save(open_->document, *target, progress);
   if (!report) return fail(report.error());
   return report_of(*target, *report);
@@ -153,13 +171,11 @@ Result<void> DocumentKeeper::become(const fs::path& target, const Progress& prog
   request.path = target.string();
   const Result<void> noted = journal ? folder_.write_session({request, 0}) : fail(journal.error());
   if (!noted) {
-    folder_.remove(journal_file);
+    if (journal) folder_.remove(journal_file);  // otherwise it may be another one, which was in the way
     (void)folder_.write_session({open.request, 0});
     return fail(noted.error());
   }
-  const fs::path old = open.journal.path();
-  const bool whole = open.journal.takes_edits();
-  go_on_with(std::move(*next), std::move(*journal), saved);
+  const Journal old = go_on_with(std::move(*next), std::move(*journal), saved);
   open.request = std::move(request);
   open.files = files_with_shells(open.document);
   open.warnings.clear();
@@ -168,7 +184,7 @@ Result<void> DocumentKeeper::become(const fs::path& target, const Progress& prog
   if (open.unfinished)
     open.unfinished.reset();
   else
-    (void)folder_.retire(old, whole ? ".saved" : ".damaged");
+    (void)retire_open(folder_, old, ".saved");
   return {};
 }
 
@@ -217,7 +233,7 @@ Result<void> DocumentKeeper::begin_journal_anew() {
   OpenDocument& open = *open_;
   const fs::path path = open.journal.path();
   if (is_there(path))  // the user may have deleted it
-    if (const Result<fs::path> retired = folder_.retire(path, ".damaged"); !retired) return fail(retired.error());
+    if (const Result<fs::path> retired = folder_.retire(path, kDamaged); !retired) return fail(retired.error());
   Document next = open.document;
   next.generations = {next.opened};
   next.cursor = 0;
@@ -260,14 +276,17 @@ Result<Journal> DocumentKeeper::begin_journal(Document& next) const {
   if (!journal) return journal;
   const Document& now = open_->document;
   Result<void> carried = has_grown(now) ? carry_over_by_ids(now.current(), next, *journal) : carry_over(now.current(), next, *journal);
-  if (!carried) return fail(std::move(carried.error()));
+  if (!carried) {
+    folder_.remove(journal->path());
+    return fail(std::move(carried.error()));
+  }
   return journal;
 }
 
-/// Makes the saved deck the base that edits are compared with and journalled against.
-void DocumentKeeper::go_on_with(Document next, Journal journal, ipc::Saved& saved) {
+/// Makes the saved deck the base that edits are compared with and journalled against. Returns the journal of before.
+Journal DocumentKeeper::go_on_with(Document next, Journal journal, ipc::Saved& saved) {
   OpenDocument& open = *open_;
-  open.journal = std::move(journal);
+  Journal old = std::exchange(open.journal, std::move(journal));
   open.twins.clear();
   if (has_grown(open.document)) {
     open.document = next;
@@ -281,6 +300,19 @@ void DocumentKeeper::go_on_with(Document next, Journal journal, ipc::Saved& save
   }
   open.saved = open.document.generations[open.document.cursor];
   open.recorded = std::move(next);
+  return old;
+}
+
+/// Removes the records of earlier saves of a deck, which were settled when it was opened. One that can't be read is moved aside.
+Result<void> DocumentKeeper::remove_intents(const fs::path& deck) const {
+  for (const fs::path& intent : folder_.save_intents(deck)) {
+    if (read_save_intent(intent)) {
+      folder_.remove(intent);
+    } else if (const Result<fs::path> retired = folder_.retire(intent, kDamaged); !retired) {
+      return fail(retired.error());
+    }
+  }
+  return {};
 }
 
 /// Reads the staged deck and begins its journal, with the selection and the part states, before the first file is replaced: whenever the
@@ -299,17 +331,14 @@ Result<DocumentKeeper::ReadySave> DocumentKeeper::make_ready(mesh::deck::StagedS
   intent.records = open.journal.records();
   intent.records_of_next = steps_to_carry(open.document.current());
   const fs::path intent_file = StateFolder::save_intent(open.journal.path());
-  for (const fs::path& other : folder_.save_intents(open.document.path)) folder_.remove(other);
+  if (Result<void> removed = remove_intents(open.document.path); !removed) return fail(std::move(removed.error()));
   if (Result<void> written = write_save_intent(intent_file, intent); !written) return fail(std::move(written.error()));
-  const fs::path journal_file = folder_.journal(next->path, next->deck->content);
-  const auto give_up = [&](Error error) {
-    folder_.remove(journal_file);
-    folder_.remove(intent_file);
-    error.message += "; the deck is as it was";
-    return fail(std::move(error));
-  };
   Result<Journal> journal = begin_journal(*next);
-  if (!journal) return give_up(std::move(journal.error()));
+  if (!journal) {
+    folder_.remove(intent_file);
+    journal.error().message += "; the deck is as it was";
+    return fail(std::move(journal.error()));
+  }
   ReadySave ready(std::move(staged), intent_file, std::move(*next), std::move(*journal));
   ready.saved = report_of(open.document.path, ready.staged.report());
   return ready;
@@ -332,11 +361,9 @@ Result<ipc::Saved> DocumentKeeper::finish_save(ReadySave save) {
     open.unfinished = std::move(save);
     return fail(std::move(error));
   }
-  const fs::path old = open.journal.path();
-  const bool whole = open.journal.takes_edits();
-  go_on_with(std::move(save.next), std::move(save.journal), save.saved);
+  const Journal old = go_on_with(std::move(save.next), std::move(save.journal), save.saved);
   // If this fails the intent stays, and the next opening of the deck retires the journal.
-  if (const Result<fs::path> retired = folder_.retire(old, whole ? ".saved" : ".damaged"); retired) folder_.remove(save.intent);
+  if (retire_open(folder_, old, ".saved")) folder_.remove(save.intent);
   return std::move(save.saved);
 }
 

@@ -1,8 +1,5 @@
 #include "daemon/modeld/save_intent.h"
 
-#include <algorithm>
-#include <optional>
-#include <set>
 #include <string>
 
 #include <unistd.h>
@@ -17,36 +14,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint64_t kMagic = 0x3345'5641'5352'5250;  // "PRRSAVE3"
-
-std::optional<Hash128> content_of(const fs::path& file) {
-  const Result<FileBytes> bytes = read_file(file);
-  return bytes ? std::optional(hash128(bytes->bytes())) : std::nullopt;
-}
-
-enum class FileState : std::uint8_t {
-  replaced,
-  waiting,  ///< not replaced; the temporary file is there
-  lost,     ///< its content has changed, or the temporary file is missing
-};
-
-FileState state_of(const SaveIntent::File& file) {
-  const std::optional<Hash128> now = content_of(file.target);
-  if (now == file.after) return FileState::replaced;
-  return now == file.before && content_of(file.temporary) == file.after ? FileState::waiting : FileState::lost;
-}
-
-Result<void> put_rest_in_place(const SaveIntent& intent, const std::vector<FileState>& states) {
-  for (std::size_t i = 0; i < intent.files.size(); ++i) {
-    const SaveIntent::File& file = intent.files[i];
-    if (states[i] != FileState::waiting) continue;
-    std::error_code problem;
-    fs::rename(file.temporary, file.target, problem);
-    if (problem) return fail(file.target.string(), "a save that was cut off can't be finished: " + problem.message());
-  }
-  for (const SaveIntent::File& file : intent.files)
-    if (Result<void> flushed = flush_folder(folder_of(file.target), file.target); !flushed) return flushed;
-  return {};
-}
 
 }  // namespace
 
@@ -107,18 +74,8 @@ Result<SaveIntent> read_save_intent(const fs::path& path) {
 }
 
 Result<SaveOutcome> settle_save(const SaveIntent& intent) {
-  std::vector<FileState> states;
-  for (const SaveIntent::File& file : intent.files) states.push_back(state_of(file));
-  const auto count = [&](FileState state) { return std::count(states.begin(), states.end(), state); };
-  SaveOutcome outcome = SaveOutcome::complete;
-  if (count(FileState::replaced) == 0) {
-    outcome = SaveOutcome::not_begun;
-  } else if (count(FileState::lost) > 0) {
-    outcome = SaveOutcome::mixed;
-  } else if (count(FileState::waiting) > 0) {
-    if (Result<void> placed = put_rest_in_place(intent, states); !placed) return fail(std::move(placed.error()));
-    outcome = SaveOutcome::finished;
-  }
+  const Result<SaveOutcome> outcome = mesh::deck::finish_replacing(intent.files);
+  if (!outcome) return outcome;
   for (const SaveIntent::File& file : intent.files) ::unlink(file.temporary.c_str());
   return outcome;
 }

@@ -8,15 +8,16 @@
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "mesh/deck/save_record.h"
 #include "mesh/deck/staged_save.h"
 
 namespace prismesh::modeld {
 
+using SaveOutcome = mesh::deck::SaveOutcome;
+
 struct SaveIntent {
-  struct File {
-    std::filesystem::path target, temporary;
-    Hash128 before, after;  ///< content of the target and of the temporary file beside it
-  };
+  using File = mesh::deck::ReplacedFile;
+
   Hash128 deck_before, deck_after;    ///< content of the whole deck
   std::uint64_t records = 0;          ///< number in the journal that the save makes obsolete
   std::uint64_t records_of_next = 0;  ///< number in the new journal of the saved deck when it is begun
@@ -29,13 +30,6 @@ SaveIntent intent_of(const mesh::deck::StagedSave& save);
 Result<void> write_save_intent(const std::filesystem::path& path, const SaveIntent& intent);
 /// Errors: the record can't be read, or its checksum is wrong.
 Result<SaveIntent> read_save_intent(const std::filesystem::path& path);
-
-enum class SaveOutcome : std::uint8_t {
-  not_begun,  ///< no file was replaced
-  complete,   ///< every file was replaced
-  finished,   ///< some files were missing; they have been replaced now
-  mixed,      ///< some files were replaced; the others were changed or removed by something else and can't be
-};
 
 /// Compares the deck's files with the record and finishes a save that was interrupted between them. Uses only temporary files whose
 /// content has the recorded hash; removes temporary files that are no longer needed. Errors: a file can't be replaced.

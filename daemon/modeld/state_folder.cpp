@@ -49,12 +49,18 @@ std::vector<fs::path> files_with(const fs::path& folder, const std::string& begi
 /// Checksum behind a line, so that a changed byte is found.
 std::string check_line(std::string_view line) { return "check " + hash128(std::as_bytes(std::span(line))).hex() + "\n"; }
 
+/// Whether a file is one of those of which only the newest are kept. What couldn't be read isn't: nobody knows what it holds.
+bool is_pruned(const fs::path& file) {
+  const std::string name = file.filename().string();
+  return name.find(std::string(kJournal) + ".") != std::string::npos && name.find(std::string(kDamaged) + ".") == std::string::npos &&
+         file.extension() != kIntent;
+}
+
 void prune_retired(const fs::path& folder) {
   std::vector<std::pair<fs::file_time_type, fs::path>> retired;
   std::error_code problem;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, problem))
-    if (entry.path().filename().string().find(std::string(kJournal) + ".") != std::string::npos && entry.path().extension() != kIntent)
-      retired.emplace_back(entry.last_write_time(problem), entry.path());
+    if (is_pruned(entry.path())) retired.emplace_back(entry.last_write_time(problem), entry.path());
   std::sort(retired.begin(), retired.end());
   for (std::size_t i = 0; i + kRetiredKept < retired.size(); ++i) fs::remove(retired[i].second, problem);
 }
@@ -118,7 +124,15 @@ Result<fs::path> StateFolder::retire(const fs::path& journal, const char* ending
   }
 }
 
+/// Moves a session aside that can't be read, so that what it says can be looked up by hand.
+void StateFolder::keep_unread_session() const {
+  std::error_code problem;
+  const fs::path session = folder_ / kSession;
+  if (fs::is_regular_file(session, problem) && !read_session()) (void)retire(session, kDamaged);
+}
+
 Result<void> StateFolder::write_session(const Session& session) const {
+  keep_unread_session();
   const Result<std::string> line = ipc::encode_request(session.attempts, session.open);
   if (!line) return fail(line.error());
   const std::string check = check_line(*line);
@@ -144,7 +158,10 @@ Result<std::optional<StateFolder::Session>> StateFolder::read_session() const {
   return std::optional(Session{*open, request->number});
 }
 
-void StateFolder::forget_session() const { remove(folder_ / kSession); }
+void StateFolder::forget_session() const {
+  keep_unread_session();
+  remove(folder_ / kSession);
+}
 
 void StateFolder::remove(const fs::path& file) const {
   std::error_code problem;

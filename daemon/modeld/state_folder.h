@@ -11,6 +11,9 @@
 
 namespace prismesh::modeld {
 
+/// The ending of what was moved aside since it can't be read.
+inline constexpr const char* kDamaged = ".damaged";
+
 /// Returns `override` if given, else $STATE_DIRECTORY, else $XDG_STATE_HOME/prismesh, else ~/.local/state/prismesh.
 std::filesystem::path state_directory(const std::optional<std::filesystem::path>& override = {});
 
@@ -32,19 +35,22 @@ class StateFolder {
   /// Returns a first chunk number above all numbers that earlier runs can have used. Derived from the clock, and from a noted number in
   /// case the clock was set back.
   std::uint64_t first_number() const;
-  /// Renames a journal to `ending` and a number, so that it is no longer used. Only the newest retired journals are kept. Returns the new
-  /// path. Errors: it can't be renamed.
+  /// Renames a file to `ending` and a number, so that it is no longer used. Of the retired journals only the newest are kept, and all that
+  /// are `kDamaged`. Returns the new path. Errors: it can't be renamed.
   Result<std::filesystem::path> retire(const std::filesystem::path& journal, const char* ending) const;
 
   struct Session {
     ipc::Open open;
     std::uint64_t attempts = 0;  ///< starts of the daemon that began to open it and never finished
   };
+  /// A file that can't be read is moved aside first. Errors: it can't be written.
   Result<void> write_session(const Session& session) const;
   Result<std::optional<Session>> read_session() const;
   void forget_session() const;
 
  private:
+  void keep_unread_session() const;
+
   std::filesystem::path folder_;
 };
 

@@ -1,6 +1,7 @@
 #include "mesh/deck/open.h"
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 #include <span>
 #include <string>
@@ -13,6 +14,7 @@
 #include "mesh/deck/detect.h"
 #include "mesh/deck/findings.h"
 #include "mesh/deck/formats/formats.h"
+#include "mesh/deck/save_record.h"
 #include "mesh/deck/text/number.h"
 #include "mesh/model/adjacency.h"
 
@@ -72,8 +74,9 @@ void note_mesh_elsewhere(const Deck& deck, const Model& model, Warnings& warning
                 "the deck has no nodes of its own: its mesh stands in files that this version doesn't read (" + names + ")");
 }
 
-/// The model and the deck, complete. Errors: the first malformed card (file and line), too many entities, cancelled.
-Result<OpenedDeck> finish(DeckContents found, Watch& watch) {
+/// The model and the deck, complete, with the warnings about its saves. Errors: the first malformed card (file and line), too many
+/// entities, cancelled.
+Result<OpenedDeck> finish(DeckContents found, std::vector<Warning> of_saves, Watch& watch) {
   if (watch.stopped()) return fail(cancelled());
   if (std::optional<Error> error = first_error(found)) return fail(std::move(*error));
 
@@ -116,6 +119,7 @@ Result<OpenedDeck> finish(DeckContents found, Watch& watch) {
   opened.model.adjacency = std::make_shared<const Adjacency>(build_adjacency(opened.model));
   note_findings(*deck, opened.model, found.warnings);
   deck->warnings = found.warnings.finish(deck->files);
+  deck->warnings.insert(deck->warnings.end(), std::make_move_iterator(of_saves.begin()), std::make_move_iterator(of_saves.end()));
   watch.tell(1);
   if (watch.stopped()) return fail(cancelled());
   opened.deck = std::move(deck);
@@ -127,14 +131,20 @@ Result<OpenedDeck> finish(DeckContents found, Watch& watch) {
 Result<OpenedDeck> open(const std::filesystem::path& path, const Progress& progress, const StandIns& stand_ins) {
   if (progress && !progress(0)) return fail(cancelled());
   const Progress unpacking = [&](double fraction) { return !progress || progress(kUnpacked * fraction); };
-  Result<FileSet> files = FileSet::begin(path, stand_ins, unpacking);
+  CutOffSave cut_off;
+  if (stand_ins.empty()) {
+    Result<CutOffSave> settled = settle_cut_off_save(path);
+    if (!settled) return fail(std::move(settled.error()));
+    cut_off = std::move(*settled);
+  }
+  Result<FileSet> files = FileSet::begin(path, stand_ins.empty() ? cut_off.stand_ins : stand_ins, unpacking);
   if (!files) return fail(std::move(files.error()));
   const Detected detected = detect_format(files->files[0].bytes.text());
   if (!detected.format) return fail(path.string(), "is no deck: it looks like " + detected.looks_like);
   Watch watch(progress);
   Result<DeckContents> found = read(*detected.format, std::move(*files), watch);
   if (!found) return fail(std::move(found.error()));
-  return finish(std::move(*found), watch);
+  return finish(std::move(*found), std::move(cut_off.warnings), watch);
 }
 
 }  // namespace prismesh::mesh::deck

@@ -16,8 +16,10 @@ struct OpenedDeck {
   Model model;  ///< complete, with adjacency
 };
 
-/// Opens a deck with its includes. `stand_ins`: files to read in place of others. Errors: the file can't be read; it is no deck (with what
-/// it looks like); this build doesn't read its format (with its name); a card that matters is malformed (file and line); cancelled.
+/// Opens a deck with its includes. A save of it that was cut off between its files is finished before, or a warning says that it can't be
+/// (save_record.h). `stand_ins`: files to read in place of others; then no save is looked for. Errors: the file can't be read; it is no
+/// deck (with what it looks like); this build doesn't read its format (with its name); a card that matters is malformed (file and line); it
+/// is being saved; cancelled.
 Result<OpenedDeck> open(const std::filesystem::path& path, const Progress& progress = {}, const StandIns& stand_ins = {});
 
 }  // namespace prismesh::mesh::deck

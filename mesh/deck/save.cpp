@@ -17,7 +17,7 @@ Result<SaveReport> save(const Deck& deck, const Model& original, const Model& mo
                         const Progress& progress) {
   Result<StagedSave> staged = StagedSave::write(deck, original, model, target, progress);
   if (!staged) return fail(std::move(staged.error()));
-  if (Result<void> placed = staged->put_in_place(); !placed) return fail(std::move(placed.error()));
+  if (Result<void> placed = staged->put_in_place_or_leave(); !placed) return fail(std::move(placed.error()));
   return staged->report();
 }
 

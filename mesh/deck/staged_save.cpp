@@ -22,6 +22,9 @@ constexpr double kShareOfCards = 0.8;
 constexpr double kShareOfCardsWithPacking = 0.2;
 constexpr double kShareOfPacking = 0.7;
 
+/// Stands for the content of a file that can't be read: no file has it.
+constexpr Hash128 kUnreadable{1, 0};
+
 std::vector<std::string_view> content_of(const SourceFile& file, const std::vector<Replacement>& replacements) {
   const std::string_view text = file.bytes.text();
   std::vector<std::string_view> pieces;
@@ -150,6 +153,21 @@ Result<std::vector<FilePlan>> plan(const Deck& deck, const TextChanges& text, co
   return same_file(target, deck.files[0].path) ? plan_in_place(deck, text) : plan_elsewhere(deck, text, target);
 }
 
+/// A file of the save with what is at its target now.
+StagedSave::File found_before(const Deck& deck, const FilePlan& plan, const TextChanges& text, bool in_place) {
+  StagedSave::File file;
+  file.index = plan.file;
+  file.as_read = plan.file >= deck.files.size() || text.by_file[plan.file].empty();
+  if (in_place) {
+    file.found = deck.on_disk->files[plan.file].identity;
+    file.before = deck.on_disk->files[plan.file].content;
+    return file;
+  }
+  if (const Result<FileIdentity> identity = identify_file(plan.target)) file.found = *identity;
+  file.before = content_now(plan.target).value_or(kUnreadable);
+  return file;
+}
+
 std::string rounding_note(const Rounding& rounding) {
   char error[32];
   std::snprintf(error, sizeof error, "%.1e", rounding.largest_error);
@@ -218,6 +236,8 @@ SaveReport report_of(const Deck& deck, const TextChanges& text, const std::vecto
 
 Result<StagedSave> StagedSave::write(const Deck& deck, const Model& original, const Model& model, const fs::path& target,
                                      const Progress& progress) {
+  const Result<CutOffSave> cut_off = settle_cut_off_save(target);
+  if (!cut_off) return fail(cut_off.error());
   const std::lock_guard lock(deck.on_disk->mutex);
   const bool packs = std::any_of(deck.files.begin(), deck.files.end(), [](const SourceFile& file) { return file.bytes.is_packed(); });
   const double of_cards = packs ? kShareOfCardsWithPacking : kShareOfCards, before_writing = of_cards + (packs ? kShareOfPacking : 0);
@@ -225,10 +245,12 @@ Result<StagedSave> StagedSave::write(const Deck& deck, const Model& original, co
   if (!text) return fail(text.error());
   StagedSave save;
   save.deck_ = &deck;
+  save.target_ = target;
   save.in_place_ = same_file(target, deck.files[0].path);
   const Result<std::vector<FilePlan>> plans = plan(deck, *text, target);
   if (!plans) return fail(plans.error());
 
+  for (const FilePlan& each : *plans) save.files_.push_back(found_before(deck, each, *text, save.in_place_));
   std::deque<std::string> packed;
   std::deque<FileBytes> companions;
   const Result<std::vector<PendingFile>> pending =
@@ -237,13 +259,10 @@ Result<StagedSave> StagedSave::write(const Deck& deck, const Model& original, co
   Result<StagedFiles> staged = StagedFiles::write(*pending, part_of(progress, before_writing, 1 - before_writing));
   if (!staged) return fail(std::move(staged.error()));
   save.staged_ = std::move(*staged);
-  for (std::size_t i = 0; i < plans->size(); ++i) {
-    const std::size_t file = (*plans)[i].file;
-    const Hash128 before = save.in_place_ ? deck.on_disk->files[file].content : Hash128{};
-    save.files_.push_back({file, before, hash128((*pending)[i].pieces), file >= deck.files.size() || text->by_file[file].empty()});
-  }
+  for (std::size_t i = 0; i < plans->size(); ++i) save.files_[i].after = hash128((*pending)[i].pieces);
   save.rounding_ = text->rounding;
   save.report_ = report_of(deck, *text, *plans);
+  for (const Warning& warning : cut_off->warnings) save.add_note("of an earlier save: " + warning.message);
   return save;
 }
 
@@ -265,11 +284,67 @@ Result<OpenedDeck> StagedSave::open(const Progress& progress) const {
   return deck::open(deck_->files[0].path, progress, stand_ins);
 }
 
+void StagedSave::leave() {
+  staged_.leave();
+  record_.reset();
+}
+
+/// A single file is replaced at once; of several, a record tells whoever comes next.
+Result<void> StagedSave::begin_record() {
+  if (record_ || has_begun()) return {};
+  if (files_.size() < 2) return SaveRecord::remove_earlier(target_);
+  std::vector<ReplacedFile> replaced;
+  for (std::size_t i = 0; i < files_.size(); ++i)
+    replaced.push_back({staged_.files()[i].target, staged_.files()[i].temporary, files_[i].before, files_[i].after});
+  Result<SaveRecord> record = SaveRecord::begin(target_, replaced);
+  if (!record) return fail(std::move(record.error()));
+  record_ = std::move(*record);
+  return {};
+}
+
+/// Before the first file is replaced. In place, files that aren't written count as well: the deck would be no longer the one that was read.
+Result<void> StagedSave::check_all() const {
+  if (in_place_)
+    for (std::size_t f = 0; f < deck_->files.size(); ++f)
+      if (Result<void> unchanged = check_unchanged(deck_->files[f], deck_->on_disk->files[f]); !unchanged) return unchanged;
+  for (std::size_t i = 0; i < files_.size(); ++i)
+    if (Result<void> same = check_target(i); !same) return fail(same.error().file, same.error().message + ", and nothing was changed");
+  return {};
+}
+
+Result<void> StagedSave::check_target(std::size_t at) const {
+  const StagedFiles::File& place = staged_.files()[at];
+  const Result<FileIdentity> now = identify_file(place.target);
+  // A copy or a touch changes the times only; the bytes decide.
+  if ((now && files_[at].found == *now) || content_now(place.target) == files_[at].before) return {};
+  return fail(place.shown.string(), "was written by another program during the save; it isn't replaced");
+}
+
 Result<void> StagedSave::put_in_place() {
   const std::lock_guard lock(deck_->on_disk->mutex);
-  Result<void> placed = staged_.put_in_place();
+  if (!has_begun())
+    if (Result<void> unchanged = check_all(); !unchanged) return unchanged;
+  if (Result<void> begun = begin_record(); !begun) return begun;
+  Result<void> placed = staged_.put_in_place([&](std::size_t at) { return check_target(at); });
   if (in_place_) remember_written();
+  if (record_ && (placed || !has_begun())) {
+    record_->end();
+    record_.reset();
+  }
   return placed;
+}
+
+Result<void> StagedSave::put_in_place_or_leave() {
+  Result<void> placed = put_in_place();
+  if (placed || !has_begun()) return placed;
+  Error error = std::move(placed.error());
+  if (in_place_ && take_back()) {
+    error.message += "; the files that had been replaced were given back what they held before";
+    return fail(std::move(error));
+  }
+  if (staged_.in_place() < files_.size()) error.message += ". The rest is put in place when the deck is opened or saved again";
+  leave();
+  return fail(std::move(error));
 }
 
 /// Notes the files that were replaced, which may be some of them only.
@@ -296,6 +371,8 @@ Result<void> StagedSave::take_back() {
     const Result<FileIdentity> identity = identify_file(deck_->files[files_[i].index].path);
     if (identity) deck_->on_disk->files[files_[i].index] = {*identity, files_[i].before, true};
   }
+  if (record_) record_->end();
+  record_.reset();
   staged_ = {};
   return {};
 }

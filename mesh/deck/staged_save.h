@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "base/file.h"
@@ -11,6 +12,7 @@
 #include "mesh/deck/data/deck.h"
 #include "mesh/deck/editing/rounding.h"
 #include "mesh/deck/open.h"
+#include "mesh/deck/save_record.h"
 #include "mesh/deck/save_report.h"
 
 namespace prismesh::mesh::deck {
@@ -19,12 +21,14 @@ class StagedSave {
  public:
   struct File {
     std::size_t index = 0;  ///< in Deck::files; from its size on, in Deck::companions
-    Hash128 before;         ///< content of the file that will be replaced; empty for another path
+    Hash128 before;         ///< content of the file that will be replaced; zero: there is none
     Hash128 after;
-    bool as_read = false;  ///< the save gives the file the content that was read
+    bool as_read = false;               ///< the save gives the file the content that was read
+    std::optional<FileIdentity> found;  ///< of the file that will be replaced, before anything was written; nothing: there is none
   };
 
-  /// The first step of save (mesh/deck/save.h): everything but replacing files. The deck must outlive this. Errors: those of save.
+  /// The first step of save (mesh/deck/save.h): everything but replacing files. Before it, a save of the target that was cut off is
+  /// settled. The deck must outlive this. Errors: those of save.
   static Result<StagedSave> write(const Deck& deck, const Model& original, const Model& model, const std::filesystem::path& target,
                                   const Progress& progress = {});
 
@@ -39,26 +43,36 @@ class StagedSave {
   /// The same files, with their places.
   const std::vector<StagedFiles::File>& places() const { return staged_.files(); }
   bool has_begun() const { return staged_.in_place() > 0; }  ///< to replace files
-  /// Keeps the files that aren't in place yet on disk, so that the save can be finished later.
-  void leave() { staged_.leave(); }
+  /// Keeps the files that aren't in place yet on disk, with the record of the save, so that it can be finished later.
+  void leave();
 
   /// Opens the deck as it will be once the files are in place. Only for a save to the deck's own path. Errors: those of open.
   Result<OpenedDeck> open(const Progress& progress = {}) const;
-  /// Replaces the files. After an error, another call continues. Errors: those of StagedFiles::put_in_place.
+  /// Replaces the files. While there are several, a record of the save is beside the main file. After an error, another call continues.
+  /// Errors: those of StagedFiles::put_in_place and of SaveRecord::begin; another program has written one of the files since the save
+  /// began, which is checked before the first is replaced, and again right before each.
   Result<void> put_in_place();
+  /// Replaces the files. After an error the replaced files are given back what they held; where that can't be, the rest and the record of
+  /// the save stay on disk, and the next opening of the deck finishes it. Errors: those of put_in_place.
+  Result<void> put_in_place_or_leave();
   /// After an error of put_in_place: restores the files that were replaced. Only for a save to the deck's own path. Errors: a file can't be
   /// written, or isn't the one that this save wrote.
   Result<void> take_back();
 
  private:
   void remember_written();
+  Result<void> begin_record();
+  Result<void> check_all() const;
+  Result<void> check_target(std::size_t at) const;
 
   const Deck* deck_ = nullptr;
+  std::filesystem::path target_;
   bool in_place_ = false;
   SaveReport report_;
   Rounding rounding_;
   std::vector<File> files_;
   StagedFiles staged_;
+  std::optional<SaveRecord> record_;  ///< while files are replaced
 };
 
 }  // namespace prismesh::mesh::deck

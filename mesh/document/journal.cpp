@@ -202,6 +202,7 @@ std::uint64_t Journal::records() const { return impl_->records; }
 bool Journal::cut_torn_tail() const { return impl_->cut_torn_tail; }
 const std::optional<Error>& Journal::damage() const { return impl_->damage; }
 bool Journal::takes_edits() const { return impl_->takes_edits; }
+bool Journal::is_whole() const { return impl_->takes_edits && impl_->file.check_untouched().has_value(); }
 
 Result<Journal> Journal::create(const std::filesystem::path& path, const Document& document) {
   if (!is_fresh(document)) return fail(path.string(), "a journal is started before the first edit; this document has been edited");

@@ -36,11 +36,11 @@ class Journal {
  public:
   /// Starts a new journal for a document that has no edits yet. Errors: the file exists, can't be written.
   static Result<Journal> create(const std::filesystem::path& path, const Document& document);
-  /// Opens a journal and brings `document` (freshly opened from the same deck) to its last acknowledged state. Cuts off an incomplete last
-  /// record, and a damaged last record, of which it keeps the journal as found beside it. After earlier damage nothing can be read: the
-  /// document gets the edits before it, and the journal is left unchanged and takes no edits. A length unit, target sizes
-  /// and criteria that the user didn't give when `document` was opened are taken from the journal.
-  /// Errors: another deck's journal (both hashes named), a damaged header, in use by another process; then `document` is unchanged.
+  /// Opens a journal and brings `document` (freshly opened from the same deck) to its last acknowledged state. Cuts off the beginning of a
+  /// last record, and a damaged last record, of which it keeps the journal as found beside it. After earlier damage nothing can be read:
+  /// the document gets the edits before it, and the journal is left unchanged and takes no edits. A length unit, target sizes and criteria
+  /// that the user didn't give when `document` was opened are taken from the journal. Errors: another deck's journal (both hashes named), a
+  /// damaged header, in use by another process; then `document` is unchanged.
   static Result<Journal> recover(const std::filesystem::path& path, Document& document);
 
   Journal(Journal&&) noexcept;
@@ -59,6 +59,8 @@ class Journal {
   const std::optional<Error>& damage() const;
   /// False if it is damaged: edits written after the damage would be lost.
   bool takes_edits() const;
+  /// Whether the file under this name is this journal and holds its records only: nothing that is damaged or that something else wrote.
+  bool is_whole() const;
 
  private:
   struct Impl;

@@ -96,8 +96,10 @@ Result<JournalFile> JournalFile::create(const fs::path& path, std::string_view t
   ::unlink(made.c_str());
   if (error == EEXIST) return fail(path.string(), "there is a journal (or another file) already; recover it or choose another name");
   if (error != 0) return fail(path.string(), "the journal can't be made: " + reason_of(error));
-  if (const Result<void> flushed = flush_folder(folder_of(path), path); !flushed)
+  if (const Result<void> flushed = flush_folder(folder_of(path), path); !flushed) {
+    ::unlink(path.c_str());  // nobody knows of it, so nobody would remove it
     return fail(path.string(), "the journal can't be made: " + flushed.error().text());
+  }
   return file;
 }
 

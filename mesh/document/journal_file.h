@@ -22,6 +22,8 @@ class JournalFile {
 
   const std::filesystem::path& path() const { return path_; }
 
+  /// Errors: the file was deleted, moved away, replaced, or has another length than this has written or read.
+  Result<void> check_untouched() const;
   /// Appends and flushes to disk. After an error the file holds what it held before; if it can't be restored, this and every later append
   /// fails.
   Result<void> append(std::string_view text);
@@ -32,7 +34,6 @@ class JournalFile {
 
  private:
   JournalFile(std::filesystem::path path, int fd, std::size_t size);
-  Result<void> check_untouched() const;
   Result<void> take_back(const std::string& reason);
   Result<void> start_afresh(const std::string& reason);
   int rewrite();

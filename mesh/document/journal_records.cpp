@@ -167,6 +167,15 @@ std::optional<std::string_view> intent_in(std::string_view open_line) {
 /// quotes within an intent are escaped.
 bool another_record_in(std::string_view text) { return text.find(kRecordBegins, 1) != std::string_view::npos; }
 
+/// Whether the text is the beginning of a record's first line, as a write that was cut off leaves it. Anything else is damage: blocks of
+/// zeros may stand where acknowledged records stood.
+bool begins_a_record(std::string_view text, std::uint64_t number) {
+  const std::string begin = std::string(kRecordBegins) + std::to_string(number) + ",";
+  const std::size_t common = std::min(text.size(), begin.size());
+  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20; };
+  return text.substr(0, common) == begin.substr(0, common) && std::none_of(text.begin(), text.end(), is_control);
+}
+
 enum class RecordState : std::uint8_t { complete, torn };
 
 /// Reads one record. It is torn if the text ends before the record does, by the length in its sealed line. Everything else that is wrong
@@ -174,7 +183,10 @@ enum class RecordState : std::uint8_t { complete, torn };
 Result<RecordState> read_record(Walker& walker, const std::function<Result<void>(const JournalRecord&)>& on_record) {
   const std::string_view text = walker.rest();
   const std::size_t newline = text.find('\n');
-  if (newline == std::string_view::npos) return RecordState::torn;
+  if (newline == std::string_view::npos) {
+    if (begins_a_record(text, walker.end().records + 1)) return RecordState::torn;
+    return walker.damaged(0, "this isn't the beginning of a record");
+  }
   const std::string_view line = text.substr(0, newline);
   const std::optional<std::string_view> open_line = walker.unsealed(line);
   if (!open_line) return walker.damaged(0, "this line isn't as it was written");

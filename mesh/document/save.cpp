@@ -36,7 +36,7 @@ std::string rounding_note(const Document& document, const deck::Rounding& roundi
 Result<deck::SaveReport> save(const Document& document, const std::filesystem::path& target, const Progress& progress) {
   Result<deck::StagedSave> staged = stage_save(document, target, progress);
   if (!staged) return fail(std::move(staged.error()));
-  if (Result<void> placed = staged->put_in_place(); !placed) return fail(std::move(placed.error()));
+  if (Result<void> placed = staged->put_in_place_or_leave(); !placed) return fail(std::move(placed.error()));
   deck::SaveReport report = staged->report();
   if (const Result<void> kept = keep_deck_settings(document, target); !kept)
     report.notes.push_back("target sizes and criteria are not kept beside the deck: " + kept.error().text());

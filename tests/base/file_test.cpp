@@ -9,6 +9,7 @@
 #include <csignal>
 #include <fstream>
 #include <string>
+#include <thread>
 
 #include <gtest/gtest.h>
 
@@ -164,6 +165,42 @@ TEST_F(FileTest, folders_made_for_files_that_cant_be_written_are_removed) {
   }
   EXPECT_FALSE(fs::exists(folder_ / "new/deep"));
   EXPECT_EQ(content(folder_ / "new/other"), "text");
+}
+
+TEST_F(FileTest, each_file_is_checked_right_before_it_is_replaced) {
+  const PendingFile files[] = {{write("a", "old"), {"new"}}, {write("b", "old"), {"new"}}};
+  Result<StagedFiles> staged = StagedFiles::write(files);
+  ASSERT_TRUE(staged);
+  bool refuses = true;
+  const auto check = [&](std::size_t at) -> Result<void> {
+    EXPECT_EQ(staged->in_place(), at);
+    EXPECT_EQ(content(folder_ / "a"), at == 0 ? "old" : "new");
+    if (at == 1 && refuses) return fail("", "not this one");
+    return {};
+  };
+  const Result<void> refused = staged->put_in_place(check);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().text(),
+            (folder_ / "b").string() + ": not this one; 1 of 2 files were already replaced, the last of them " + (folder_ / "a").string());
+  EXPECT_EQ(content(folder_ / "b"), "old");
+  refuses = false;
+  EXPECT_TRUE(staged->put_in_place(check));
+  EXPECT_EQ(content(folder_ / "b"), "new");
+  for (const StagedFiles::File& file : staged->files()) EXPECT_EQ(file.identity, *identify_file(file.target));
+}
+
+TEST_F(FileTest, an_identity_differs_though_size_and_time_were_set_back) {
+  const fs::path path = write("a", "one");
+  const FileIdentity before = *identify_file(path);
+  std::this_thread::sleep_for(std::chrono::milliseconds(30));  // the kernel's clock of files ticks that slowly
+  write("a", "two");
+  struct stat status {};
+  ASSERT_EQ(::stat(path.c_str(), &status), 0);
+  const timespec times[2] = {status.st_atim, {before.modified_ns / 1'000'000'000, before.modified_ns % 1'000'000'000}};
+  ASSERT_EQ(::utimensat(AT_FDCWD, path.c_str(), times, 0), 0);
+  const FileIdentity now = *identify_file(path);
+  EXPECT_EQ(now.modified_ns, before.modified_ns);
+  EXPECT_NE(now, before);
 }
 
 TEST_F(FileTest, nothing_changes_when_one_of_them_cant_be_written) {

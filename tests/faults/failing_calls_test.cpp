@@ -16,15 +16,15 @@ using test::Failure;
 
 class FailingCalls : public ::testing::TestWithParam<Session> {
  protected:
-  /// What a save in place would make of the deck's files: those of a save elsewhere.
-  Files deck_to_be(DocumentKeeper& keeper) {
+  /// What a save to `path` would make of the deck's files: those of a save elsewhere.
+  Files deck_to_be(DocumentKeeper& keeper, const fs::path& path) {
     fs::remove_all(root_.copy());
-    const fs::path target = root_.copy() / fs::relative(keeper.document().path, root_.disk());
+    const fs::path target = root_.copy() / fs::relative(path, root_.disk());
     const Result<ipc::Saved> saved = keeper.save(target.string());
     EXPECT_TRUE(saved) << saved.error().text();
     Files files = deck_files(place_);
-    for (const auto& [path, content] : test::disk_state_of(root_.copy()).files)
-      files[(root_.disk() / fs::relative(path, root_.copy())).string()] = content;
+    for (const auto& [file, content] : test::disk_state_of(root_.copy()).files)
+      files[(root_.disk() / fs::relative(file, root_.copy())).string()] = content;
     return files;
   }
 
@@ -41,7 +41,9 @@ class FailingCalls : public ::testing::TestWithParam<Session> {
         documents.push_back(acknowledged = fingerprint(keeper));
         for (const std::string& step : GetParam().steps) {
           const std::string before = fingerprint(keeper);
-          if (step == "save") decks.push_back(deck_to_be(keeper));
+          const fs::path own = keeper.document().path;
+          if (step == "save") decks.push_back(deck_to_be(keeper, own));
+          if (step == "copy" || step == "save as") decks.push_back(deck_to_be(keeper, own.parent_path() / kSavedAs / kOtherDeck));
           const Result<void> done = run_step(keeper, step);
           const std::string after = fingerprint(keeper);
           EXPECT_TRUE(done || after == before) << step << " was refused, and changed the document all the same";
@@ -50,7 +52,7 @@ class FailingCalls : public ::testing::TestWithParam<Session> {
           // It said so; all steps before went well, since from here on everything fails.
           if (!done && done.error().message.find("may come back") != std::string::npos && uncertain.empty())
             uncertain = went_well_.at(documents.size() - 1);
-          if (step.starts_with("save") && done) decks = {deck_files(place_)};
+          if ((step.starts_with("save") || step == "copy") && done) decks = {deck_files(place_)};
         }
       }
     }
@@ -64,6 +66,8 @@ class FailingCalls : public ::testing::TestWithParam<Session> {
     EXPECT_TRUE(acknowledged.empty() || found == acknowledged || found == uncertain)
         << "the recovered document is not the acknowledged one";
     if (went_well_.empty()) went_well_ = documents;
+    const Result<void> other = read_other_deck(place_);
+    EXPECT_TRUE(other) << other.error().text();
     const Files deck = deck_files(place_);
     EXPECT_TRUE(std::any_of(decks.begin(), decks.end(), [&](const Files& each) { return holds(deck, each, place_); }))
         << "the deck is of no state that was saved";

@@ -97,6 +97,8 @@ std::size_t expect_recovery(const Recorded& recorded, const Place& place, std::m
     const std::string found = fingerprint(keeper);
     ASSERT_TRUE(found == recorded.documents[before] || found == recorded.documents[after])
         << "the document is neither as it was after step " << before << " nor as after the next";
+    const Result<void> other = read_other_deck(place);
+    ASSERT_TRUE(other) << other.error().text();
     const auto deck = deck_files(place);
     ASSERT_TRUE(holds(deck, recorded.decks[before], place) || holds(deck, recorded.decks[after], place)) << "the deck is a mixture";
     for (const auto& warning : keeper.state().warnings)

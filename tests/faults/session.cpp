@@ -10,6 +10,7 @@
 
 #include "base/compression.h"
 #include "base/hash.h"
+#include "mesh/deck/open.h"
 #include "mesh/document/edit_json.h"
 
 namespace prismesh::modeld::faults {
@@ -56,11 +57,19 @@ fs::path one_file(const fs::path& folder) {
   return folder / "one.k";
 }
 
-fs::path three_files(const fs::path& folder) {
-  write(folder / "main.k", "*KEYWORD\n" + nodes_of_rows(0, 3) + "*INCLUDE\nparts/above.k\n*INCLUDE\nmesh/rest.k\n*END\n");
-  write(folder / "parts/above.k", nodes_of_rows(3, 6));
+fs::path three_files_of(const fs::path& folder, const std::string& name, double lifted) {
+  write(folder / name, "*KEYWORD\n" + nodes_of_rows(0, 3) + "*INCLUDE\nparts/above.k\n*INCLUDE\nmesh/rest.k\n*END\n");
+  write(folder / "parts/above.k", nodes_of_rows(3, 6, lifted));
   write(folder / "mesh/rest.k", nodes_of_rows(6, kSide + 1) + shells_and_part());
-  return folder / "main.k";
+  return folder / name;
+}
+
+fs::path three_files(const fs::path& folder) { return three_files_of(folder, "main.k", 0); }
+
+/// With another deck of the same includes where "copy" and "save as" write.
+fs::path two_decks(const fs::path& folder) {
+  three_files_of(folder / kSavedAs, kOtherDeck, 3);
+  return three_files(folder);
 }
 
 fs::path packed(const fs::path& folder) {
@@ -151,8 +160,9 @@ Result<void> run_step(DocumentKeeper& keeper, const std::string& step) {
     const Result<ipc::Saved> saved = keeper.save(std::nullopt);
     return saved ? Result<void>() : fail(saved.error());
   }
-  if (step == "save as") {
-    const Result<ipc::Saved> saved = keeper.save_as((keeper.document().path.parent_path() / kSavedAs / "other.k").string());
+  if (step == "save as" || step == "copy") {
+    const std::string other = (keeper.document().path.parent_path() / kSavedAs / kOtherDeck).string();
+    const Result<ipc::Saved> saved = step == "copy" ? keeper.save_copy(other) : keeper.save_as(other);
     return saved ? Result<void>() : fail(saved.error());
   }
   const Result<mesh::document::Edit> edit = mesh::document::parse_edit(step);
@@ -166,6 +176,16 @@ Result<void> open_deck(DocumentKeeper& keeper, const Place& place) {
   request.path = place.deck.string();
   const Result<bool> opened = keeper.open(request, {});
   return opened ? Result<void>() : fail(opened.error());
+}
+
+Result<void> read_other_deck(const Place& place) {
+  const fs::path other = place.root / kSavedAs / kOtherDeck;
+  if (!fs::exists(other)) return {};
+  const Result<mesh::deck::OpenedDeck> opened = mesh::deck::open(other);
+  if (!opened) return fail(opened.error());
+  for (const mesh::deck::Warning& warning : opened->deck->warnings)
+    if (warning.kind.starts_with("save-") && warning.kind != "save-finished") return fail(warning.file, warning.message);
+  return {};
 }
 
 Result<void> reopen_deck(DocumentKeeper& keeper, const Place& place) {
@@ -203,6 +223,11 @@ const std::vector<Session>& sessions() {
        {R"({"edit":"translate","by":[0,0,0.25],"on":"1-60"})", R"({"edit":"select","expr":"1-30"})", R"({"edit":"lock","on":"1"})",
         "save as", R"({"edit":"unlock","on":"1"})", R"({"edit":"undo"})", R"({"edit":"undo"})",
         R"({"edit":"translate","by":[0,0.125,0.5],"on":"30-81"})", "save", R"({"edit":"translate","by":[0,0,1],"on":"10-70"})"}},
+      {"saved_over",
+       two_decks,
+       {R"({"edit":"translate","by":[0,0,0.25],"on":"all"})", "copy", R"({"edit":"translate","by":[0,0,0.5],"on":"all"})", "copy",
+        R"({"edit":"lock","on":"1"})", "save as", R"({"edit":"unlock","on":"1"})", R"({"edit":"translate","by":[0,0,1],"on":"10-70"})",
+        "save"}},
   };
   return kAll;
 }

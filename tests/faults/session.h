@@ -47,11 +47,15 @@ bool holds(const Files& found, const Files& recorded, const Place& place);
 
 /// The folder beside a deck that "save as" goes into.
 inline constexpr const char* kSavedAs = "as";
-/// "save", "save as" or an edit as JSON. Errors: refused.
+inline constexpr const char* kOtherDeck = "other.k";
+/// "save", "save as", "copy" (both to the other deck) or an edit as JSON. Errors: refused.
 Result<void> run_step(DocumentKeeper& keeper, const std::string& step);
 Result<void> open_deck(DocumentKeeper& keeper, const Place& place);
 /// What was open in the last life; the place's deck, if nothing was.
 Result<void> reopen_deck(DocumentKeeper& keeper, const Place& place);
+
+/// Reads the other deck, if it is there, as any program that only reads does. Errors: it can't be read; it may be of two saves.
+Result<void> read_other_deck(const Place& place);
 
 struct Session {
   std::string name;
@@ -60,7 +64,8 @@ struct Session {
   bool by_chance = false;  ///< steps that are refused are left out
 };
 inline void PrintTo(const Session& session, std::ostream* out) { *out << session.name; }
-/// Edits of all kinds; decks of one file, of several in folders of their own, packed; a repair; a save under another name.
+/// Edits of all kinds; decks of one file, of several in folders of their own, packed; a repair; saves under another name, also over another
+/// deck.
 const std::vector<Session>& sessions();
 /// Another one of the same kinds of steps on one of these decks.
 Session session_by_chance(std::mt19937_64& random);

@@ -360,7 +360,7 @@ TEST_F(Keeping, a_save_removes_the_record_of_an_earlier_one) {
   std::ofstream(folder_.state() / left) << "an earlier save";
   ASSERT_TRUE(first.edit(move_edit(1314, 0.25)));
   ASSERT_TRUE(first.save(std::nullopt));
-  EXPECT_TRUE(state_files(".saving").empty()) << "it would be taken for what happened to the deck as it is now";
+  EXPECT_TRUE(StateFolder(folder_.state()).save_intents(deck).empty()) << "it would be taken for what happened to the deck as it is now";
 }
 
 TEST_F(Keeping, a_save_that_was_taken_back_leaves_nothing_behind_and_can_be_made_again) {
@@ -558,15 +558,16 @@ TEST_F(Keeping, of_a_damaged_journal_what_is_before_the_damage_is_shown_until_th
   {
     DocumentKeeper given_up = damaged();
     ASSERT_TRUE(given_up.close(true));
-    EXPECT_EQ(state_files(".discarded.").size(), 1u);
+    EXPECT_EQ(state_files(".damaged.").size(), 1u);
     ASSERT_TRUE(given_up.open(request(deck), {}));
     ASSERT_TRUE(given_up.edit(move_edit(1313, 0.5)));
     ASSERT_TRUE(given_up.close(true));
+    EXPECT_EQ(state_files(".discarded.").size(), 1u) << "of a whole journal";
   }
   EXPECT_EQ(test::whole_file(deck), untouched);
   DocumentKeeper opened_again = damaged();
   ASSERT_TRUE(opened_again.save(std::nullopt));
-  EXPECT_EQ(state_files(".damaged.").size(), 1u) << "it is kept";
+  EXPECT_EQ(state_files(".damaged.").size(), 2u) << "it is kept";
   EXPECT_NE(test::whole_file(deck), untouched);
   ASSERT_TRUE(opened_again.edit(move_edit(1313, 0.5)));
   const double last = height(opened_again, 1313);
