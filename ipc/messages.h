@@ -123,7 +123,7 @@ struct Failed {
   std::string file;
   long line = 0;
   std::string message;
-  bool unsaved_edits = false;  ///< of Open and Close: the open document has unsaved edits, and what to do with them isn't said
+  std::optional<bool> unsaved_edits{};  ///< true, of Open and Close: the open document has some, and what to do with them isn't said
 };
 struct Done {};
 struct Welcome {

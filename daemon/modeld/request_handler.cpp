@@ -24,7 +24,7 @@ Outcome told(Result<Answer> found) {
 /// `blocked`: by unsaved edits, so that the client can ask its user about them.
 Outcome failed_by_edits(const Error& error, bool blocked) {
   ipc::Failed failed = ipc::failed_from(error);
-  failed.unsaved_edits = blocked;
+  if (blocked) failed.unsaved_edits = true;
   return {std::move(failed), {}, {}, {}};
 }
 

@@ -298,7 +298,7 @@ void ModelLink::took_opened(const ipc::Answer& answer, const std::filesystem::pa
   if (const auto* failed = std::get_if<ipc::Failed>(&answer)) {
     if (was_stopped(*failed))
       say_failed(*failed, whole.filename().string() + " was not opened");
-    else if (failed->unsaved_edits)
+    else if (failed->unsaved_edits.value_or(false))
       refused_ = whole;
     else
       say(Notice::Kind::error, fmt::format("{} was not opened. {}", whole.filename().string(), text_of(*failed)));
