@@ -226,7 +226,13 @@ void add_session(Parser& parser) {
     command->parse_complete_callback([o, action] { o->action = action; });
     return command;
   };
-  names_file(add("open", Action::open, "open a deck")->add_option("DECK", options->deck, "the deck's main file"))->required();
+  const auto add_unsaved = [o = options](CLI::App* command) {
+    CLI::Option* discard = command->add_flag("--discard", o->discard, "give unsaved edits up");
+    command->add_flag("--keep", o->keep, "keep unsaved edits: they come back when their deck is opened again")->excludes(discard);
+  };
+  CLI::App* open_app = add("open", Action::open, "open a deck");
+  names_file(open_app->add_option("DECK", options->deck, "the deck's main file"))->required();
+  add_unsaved(open_app);
   CLI::App* edit_app = add("edit", Action::edit, "edit the open document");
   edit_app->add_option("EDIT", options->edits, "an edit as JSON; may be repeated");
   add_optional(edit_app, "--script", options->script, "a file of edits, one JSON object per line; they follow the others");
@@ -236,7 +242,7 @@ void add_session(Parser& parser) {
   add("state", Action::state, "print what is open");
   add("undo", Action::undo, "undo the last edit");
   add("redo", Action::redo, "apply the last undone edit again");
-  add("close", Action::close, "close the document")->add_flag("--discard", options->discard, "also with unsaved edits");
+  add_unsaved(add("close", Action::close, "close the document"));
 }
 
 void add_devices(Parser& parser) {

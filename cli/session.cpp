@@ -165,6 +165,8 @@ std::string whole_path(const std::filesystem::path& path) {
 ipc::Open open_request(const SessionOptions& options, const Common& common) {
   ipc::Open open;
   open.path = whole_path(options.deck);
+  open.discard = options.discard;
+  open.keep = options.keep;
   if (common.length_unit) open.length_unit = std::string(name(*common.length_unit));
   open.rules = common.rules;
   for (document::JudgingRule& rule : open.rules)
@@ -223,7 +225,7 @@ int session(const SessionOptions& options, const Common& common, const Context& 
       answer = session.ask_again(save, "saving");
       break;
     }
-    case SessionAction::close: answer = session.ask(ipc::Close{options.discard}, "closing"); break;
+    case SessionAction::close: answer = session.ask(ipc::Close{options.discard, options.keep}, "closing"); break;
   }
   if (!answer) {
     say(context, answer.error());

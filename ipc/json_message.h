@@ -28,7 +28,7 @@ namespace prismesh::json {
   }
 
 // Answers that every daemon gives.
-PRISMESH_MESSAGE(ipc::Failed, "failed", f("file", m.file), f("line", m.line), f("message", m.message));
+PRISMESH_MESSAGE(ipc::Failed, "failed", f("file", m.file), f("line", m.line), f("message", m.message), f("unsaved_edits", m.unsaved_edits));
 PRISMESH_MESSAGE(ipc::Done, "done", );
 
 }  // namespace prismesh::json

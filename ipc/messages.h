@@ -30,6 +30,7 @@ struct Open {
   std::optional<std::string> criteria;
   std::vector<mesh::document::JudgingRule> rules;  ///< what parts are judged by, after the settings beside the deck and the two above
   bool discard = false;  ///< discards unsaved edits of the open document once the other deck is read; false: refused with unsaved edits
+  bool keep = false;     ///< instead leaves them in their journal: they come back when that deck is opened again
 };
 struct Save {
   std::optional<std::string> path;  ///< absent: the deck's own
@@ -39,6 +40,7 @@ struct Save {
 };
 struct Close {
   bool discard = false;  ///< false: refused while there are unsaved edits
+  bool keep = false;     ///< instead leaves them in their journal: they come back when the deck is opened again
 };
 struct ApplyEdit {
   mesh::document::Edit edit;
@@ -121,6 +123,7 @@ struct Failed {
   std::string file;
   long line = 0;
   std::string message;
+  std::optional<bool> unsaved_edits{};  ///< true, of Open and Close: the open document has some, and what to do with them isn't said
 };
 struct Done {};
 struct Welcome {

@@ -11,6 +11,7 @@
 #include "kiosk/display/monitor.h"
 #include "kiosk/editor_keys.h"
 #include "kiosk/tool_list.h"
+#include "kiosk/tools/files/files_tool.h"
 #include "kiosk/tools/key_table.h"
 
 namespace prismesh::kiosk {
@@ -34,7 +35,7 @@ WindowedKiosk::WindowedKiosk(display::Window& window, Station& station) : window
 
 Result<void> WindowedKiosk::run() {
   if (Result<void> laid_out = station_.screen.lay_out(); !laid_out) return laid_out;  // so that the panels' width is known
-  while (!closing_) {
+  while (!station_.editor.context().quits) {
     const Result<std::vector<display::WindowEvent>> events = window_.take_events();
     if (!events) return fail(events.error());
     for (const display::WindowEvent& event : *events) {
@@ -94,7 +95,7 @@ Result<void> WindowedKiosk::take(const display::WindowEvent& event) {
     gestures_.cancel();
     station_.editor.cancel_gesture();
   } else if (std::holds_alternative<display::CloseRequested>(event)) {
-    closing_ = true;
+    station_.editor.command(tools::files::quit_command(), std::nullopt);
   }
   return {};
 }

@@ -48,7 +48,6 @@ class WindowedKiosk {
   bool edge_fed_ = false;      ///< the panels haven't handled a press or release yet
   bool dirty_ = true;
   bool fullscreen_ = false;
-  bool closing_ = false;
   bool shown_moving_ = false;  ///< the last picture was drawn for speed
   std::int64_t wheel_rest_ns_ = 0;
   std::uint64_t shown_changes_ = 0;

@@ -110,14 +110,14 @@ Result<DocumentKeeper::OpenDocument> DocumentKeeper::load(const ipc::Open& reque
 Result<bool> DocumentKeeper::open(const ipc::Open& request, const Progress& progress) {
   if (open_) {
     if (same_file(open_->document.path, request.path)) return false;
-    if (changed() && !request.discard)
+    if (is_blocked(request))
       return fail(open_->document.path.string(),
-                  "has unsaved edits: save it, or give them up (prismesh session close --discard), before another deck is opened");
+                  "has unsaved edits: save it, keep them for its next opening (prismesh session open --keep), or give them up (--discard)");
   }
   Result<OpenDocument> loaded = if_memory_allows([&] { return load(request, progress); }, request.path);
   if (!loaded) return fail(std::move(loaded.error()));
   if (open_)
-    if (Result<void> gone = let_go(); !gone) return fail(std::move(gone.error()));
+    if (Result<void> gone = let_go(request.keep); !gone) return fail(std::move(gone.error()));
   open_ = std::move(*loaded);
   if (const Result<void> noted = folder_.write_session({request, 0}); !noted)
     open_->warnings.push_back({noted.error().file, 0, "session-not-noted",
@@ -223,18 +223,29 @@ void DocumentKeeper::keep_judging(EditReport& report) const {
     report.notes.push_back("target sizes and criteria are not kept beside the deck: " + kept.error().text());
 }
 
-Result<void> DocumentKeeper::close(bool discard) {
+bool DocumentKeeper::is_blocked(const ipc::Open& request) const {
+  return changed() && !request.discard && !request.keep && !same_file(open_->document.path, request.path);
+}
+
+Result<void> DocumentKeeper::close(bool discard, bool keep) {
   if (!open_) return fail("", "no document is open");
-  if (!discard && changed())
-    return fail(open_->document.path.string(), "has unsaved edits: save it, or give them up (prismesh session close --discard)");
-  if (Result<void> gone = let_go(); !gone) return gone;
+  if (is_blocked(ipc::Close{discard, keep}))
+    return fail(open_->document.path.string(),
+                "has unsaved edits: save it, keep them for its next opening (prismesh session close --keep), or give them up (--discard)");
+  if (Result<void> gone = let_go(keep); !gone) return gone;
   folder_.forget_session();
   return {};
 }
 
-/// Closes the document and retires its journal, so that the next opening of the deck begins without these edits.
-Result<void> DocumentKeeper::let_go() {
+/// Closes the document. `keep`: with unsaved edits its journal stays, and the next opening of the deck recovers them. Otherwise it is
+/// retired, and the next opening begins without them.
+Result<void> DocumentKeeper::let_go(bool keep) {
   if (Result<void> ended = end_unfinished_save(); !ended) return ended;
+  if (keep && changed()) {
+    if (Result<void> in_place = open_->journal.check_in_place(); !in_place) return in_place;
+    open_.reset();
+    return {};
+  }
   const Journal& journal = open_->journal;
   std::error_code problem;
   if (journal.records() == 0 && journal.is_whole())

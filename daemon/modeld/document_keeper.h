@@ -45,7 +45,12 @@ class DocumentKeeper {
   Result<ipc::Saved> save_as(const std::string& path, const Progress& progress = {});
   /// Returns what a save to `path` would replace or make; nothing, if it would only write new files into existing folders.
   Result<std::optional<ipc::SaveWould>> would(const std::string& path) const;
-  Result<void> close(bool discard);
+  /// `keep`: unsaved edits stay in their journal, for the next opening of the deck. Errors: unsaved edits, and neither `discard` nor
+  /// `keep`; they can't be kept.
+  Result<void> close(bool discard, bool keep = false);
+  /// Whether unsaved edits are in the way of this request.
+  bool is_blocked(const ipc::Open& request) const;
+  bool is_blocked(const ipc::Close& request) const { return changed() && !request.discard && !request.keep; }
 
   bool is_open() const { return open_.has_value(); }
   const mesh::document::Document& document() const { return open_->document; }
@@ -114,7 +119,7 @@ class DocumentKeeper {
   const mesh::document::Generation* original_of(const mesh::document::Generation* recorded) const;
   void keep_judging(mesh::document::EditReport& report) const;
   std::size_t same_drop(const mesh::document::Prepared& prepared) const;
-  Result<void> let_go();
+  Result<void> let_go(bool keep);
 
   StateFolder folder_;
   std::size_t history_bytes_;

@@ -179,7 +179,6 @@ Result<void> DocumentKeeper::become(const fs::path& target, const Progress& prog
   open.request = std::move(request);
   open.files = files_with_shells(open.document);
   open.warnings.clear();
-  open.recovered = 0;
   // An old journal that can't be retired is recovered with its deck, so edits appear twice rather than being lost.
   if (open.unfinished)
     open.unfinished.reset();
@@ -299,6 +298,7 @@ Journal DocumentKeeper::go_on_with(Document next, Journal journal, ipc::Saved& s
     open.document.next_number = std::max(open.document.next_number, next.next_number);
   }
   open.saved = open.document.generations[open.document.cursor];
+  open.recovered = 0;  // they are in the deck now
   open.recorded = std::move(next);
   return old;
 }

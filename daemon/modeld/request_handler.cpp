@@ -21,6 +21,13 @@ Outcome told(Result<Answer> found) {
   return {std::move(*found), {}, {}, {}};
 }
 
+/// `blocked`: by unsaved edits, so that the client can ask its user about them.
+Outcome failed_by_edits(const Error& error, bool blocked) {
+  ipc::Failed failed = ipc::failed_from(error);
+  if (blocked) failed.unsaved_edits = true;
+  return {std::move(failed), {}, {}, {}};
+}
+
 }  // namespace
 
 /// Publishes the current generation and notifies all clients. The edit stays valid if there is no memory for the snapshot.
@@ -44,8 +51,9 @@ Outcome RequestHandler::opened() {
 }
 
 Outcome RequestHandler::open(const ipc::Open& request, const Progress& progress) {
+  const bool blocked = keeper_.is_blocked(request);
   const Result<bool> done = keeper_.open(request, progress);
-  if (!done) return {ipc::failed_from(done.error()), {}, {}, {}};
+  if (!done) return failed_by_edits(done.error(), blocked);
   // Already open: only the asking client gets the state; other views stay as they are.
   return *done ? opened() : Outcome{keeper_.state(), {}, {}, {}};
 }
@@ -136,7 +144,8 @@ Outcome RequestHandler::save(const ipc::Save& request, const Progress& progress)
 }
 
 Outcome RequestHandler::close(const ipc::Close& request) {
-  if (const Result<void> done = keeper_.close(request.discard); !done) return {ipc::failed_from(done.error()), {}, {}, {}};
+  const bool blocked = keeper_.is_blocked(request);
+  if (const Result<void> done = keeper_.close(request.discard, request.keep); !done) return failed_by_edits(done.error(), blocked);
   publisher_.forget();
   Outcome outcome;
   outcome.events.emplace_back(ipc::DocumentClosed{});

@@ -35,10 +35,16 @@ std::optional<tools::Reply> question_box(const tools::Question& question, displa
     ImGui::Dummy(ImVec2(0, kGrid / 2));
   }
   for (const tools::Question::List& list : question.lists) path_list(list);
-  for (std::size_t i = 0; i < question.choices.size(); ++i) {
-    const tools::Question::Choice& choice = question.choices[i];
-    if (i > 0) ImGui::SameLine(0, kGrid);
-    if (ImGui::Button(fmt::format("{}  ({})", choice.label, choice.key_name).c_str())) reply = choice.reply;
+  float free = 0;  // width left in the line of buttons
+  for (const tools::Question::Choice& choice : question.choices) {
+    const std::string label = printable(fmt::format("{}  ({})", choice.label, choice.key_name));
+    const float width = ImGui::CalcTextSize(label.c_str()).x + 2 * ImGui::GetStyle().FramePadding.x;
+    if (free >= kGrid + width)
+      ImGui::SameLine(0, kGrid);
+    else
+      free = ImGui::GetContentRegionAvail().x + kGrid;
+    free -= kGrid + width;
+    if (ImGui::Button(label.c_str())) reply = choice.reply;
   }
   ImGui::End();
   return reply;

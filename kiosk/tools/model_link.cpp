@@ -100,7 +100,7 @@ void ModelLink::lost(const Error& error) {
   client_.reset();
   waiting_.clear();
   busy_.clear();
-  stale_ = fetching_ = fetched_ = counting_ = false;
+  stale_ = fetching_ = fetched_ = counting_ = opening_ = false;
   edits_ = long_ = 0;
   becoming_.clear();
   if (drag_) drop_drag("lost");
@@ -151,7 +151,7 @@ void ModelLink::heard(const ipc::Event& event) {
                    stale_ = true;
                  },
                  [&](const ipc::DocumentOpened& opened) {
-                   deck_ = opened.path;
+                   if (!opening_) deck_ = opened.path;
                    fetched_ = false;  // it may be the same deck, read anew
                    busy_.clear();
                    stale_ = true;
@@ -195,17 +195,21 @@ void ModelLink::took_state(const ipc::DocumentState& state) {
   history_bytes_ = state.history_bytes;
   history_cap_ = state.history_cap;
   if (!state.open) {
-    if (deck_ && !state.busy) open(*deck_);  // the server is new: it brings the journal's edits back when it opens the deck
+    // The server is new: it brings the journal's edits back when it opens the deck. While it opens by itself what was open before, a kiosk
+    // that was just started with a deck waits for its turn.
+    const bool started = connections_ == 1 && document_number_ == 0;
+    if (deck_ && !opening_ && (!state.busy || started)) open(*deck_);
     return;
   }
-  if (deck_ && deck_->string() != state.path && !snapshot_) {
+  if (deck_ && deck_->string() != state.path && !snapshot_ && !opening_) {
     const std::filesystem::path wanted = *deck_;
     deck_ = state.path;
     open(wanted);
     return;
   }
-  deck_ = state.path;
+  if (!opening_) deck_ = state.path;
   is_document(state.path);
+  if (first || recovered_said_ != connections_) say_recovered(state);
   if (first) say_warnings();
   if (!fetched_ || !snapshot_ || snapshot_->info().generation != state.generation || snapshot_->info().document != state.path)
     stale_ = true;
@@ -220,6 +224,16 @@ void ModelLink::say_warnings() {
   if (warnings_.size() > 1) text += fmt::format("\n{} about this deck: Ctrl+I lists them.", tools::counts_of(warnings_));
   say(worst.is_error ? Notice::Kind::error : Notice::Kind::warning, std::move(text));
   notices_.back().lists_warnings = warnings_.size() > 1;
+}
+
+void ModelLink::say_recovered(const ipc::DocumentState& state) {
+  recovered_said_ = connections_;
+  // Without a change these are steps that a save has carried over, such as the selection.
+  if (state.recovered_edits == 0 || !state.changed) return;
+  // A warning stays until it is closed, and comes before those of the deck.
+  say(Notice::Kind::warning,
+      fmt::format("{} edit{} of {} that had not been saved {} recovered.", state.recovered_edits, state.recovered_edits == 1 ? "" : "s",
+                  std::filesystem::path(state.path).filename().string(), state.recovered_edits == 1 ? "was" : "were"));
 }
 
 void ModelLink::fetch_snapshot() {
@@ -262,48 +276,54 @@ void ModelLink::show(std::shared_ptr<const ipc::SnapshotView> view) {
   fetched_ = true;
 }
 
-/// The daemon names the deck that is open when its unsaved edits are in the way.
-bool ModelLink::is_refused_for_edits(const ipc::Failed& failed) const {
-  if (snapshot_) return failed.file == snapshot_->info().document && (snapshot_->info().changed || !up_to_date());
-  return state_ && state_->open && state_->changed && failed.file == state_->path;
-}
-
-void ModelLink::open(const std::filesystem::path& deck, bool discard) {
+void ModelLink::open(const std::filesystem::path& deck, Unsaved unsaved) {
   std::error_code ignored;
   const std::filesystem::path whole = std::filesystem::absolute(deck, ignored);
   busy_ = busy_words({"Opening " + whole.filename().string()}, true);
   busy_fraction_ = 0;
   ipc::Open request;
   request.path = whole.string();
-  request.discard = discard;
-  ask(request, [this, whole](const ipc::Answer& answer) {
-    busy_.clear();
-    if (const auto* failed = std::get_if<ipc::Failed>(&answer)) {
-      if (was_stopped(*failed))
-        say_failed(*failed, whole.filename().string() + " was not opened");
-      else if (is_refused_for_edits(*failed))
-        refused_ = whole;
-      else
-        say(Notice::Kind::error, fmt::format("{} was not opened. {}", whole.filename().string(), text_of(*failed)));
-      if (snapshot_) return;
-      // What the server has open instead is shown: nobody could save it unseen.
-      deck_.reset();
-      return ask_state();
-    }
-    deck_ = whole;
-    fetched_ = false;
-    stale_ = true;
-    trace_.line("document " + whole.string());
-    if (const auto* state = std::get_if<ipc::DocumentState>(&answer)) {
-      if (state->recovered_edits > 0)
-        say(Notice::Kind::information,
-            fmt::format("{} edits that had not been saved were brought back from the journal.", state->recovered_edits));
-      took_state(*state);
-    } else {
-      ask_state();
-    }
-  });
+  request.discard = unsaved == Unsaved::discard;
+  request.keep = unsaved == Unsaved::keep;
+  const std::string kept = unsaved == Unsaved::keep ? std::filesystem::path(document_path_).filename().string() : std::string();
+  opening_ = client_.has_value();
+  ask(request, [this, whole, kept](const ipc::Answer& answer) { took_opened(answer, whole, kept); });
   if (!client_) busy_.clear();
+}
+
+/// `kept`: the deck whose unsaved edits were kept; empty: none.
+void ModelLink::took_opened(const ipc::Answer& answer, const std::filesystem::path& whole, const std::string& kept) {
+  busy_.clear();
+  opening_ = false;
+  if (const auto* failed = std::get_if<ipc::Failed>(&answer)) {
+    if (was_stopped(*failed))
+      say_failed(*failed, whole.filename().string() + " was not opened");
+    else if (failed->unsaved_edits.value_or(false))
+      refused_ = whole;
+    else
+      say(Notice::Kind::error, fmt::format("{} was not opened. {}", whole.filename().string(), text_of(*failed)));
+    if (snapshot_) return;
+    // What the server has open instead is shown: nobody could save it unseen.
+    deck_.reset();
+    return ask_state();
+  }
+  deck_ = whole;
+  fetched_ = false;
+  stale_ = true;
+  trace_.line("document " + whole.string());
+  if (!kept.empty())
+    say(Notice::Kind::information, fmt::format("The unsaved edits of {} are kept: they come back when it is opened again.", kept));
+  if (const auto* state = std::get_if<ipc::DocumentState>(&answer))
+    took_state(*state);
+  else
+    ask_state();
+}
+
+void ModelLink::close(Then then) {
+  ask(ipc::Close{true}, [this, then = std::move(then)](const ipc::Answer& answer) {
+    if (const auto* failed = std::get_if<ipc::Failed>(&answer)) say_failed(*failed, "nothing was discarded");
+    then(answer);
+  });
 }
 
 void ModelLink::save(const ipc::Save& request, const std::string& remark, Then then) {

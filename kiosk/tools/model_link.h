@@ -88,8 +88,12 @@ class ModelLink {
   const std::string& busy() const { return busy_; }
   double busy_fraction() const { return busy_fraction_; }
 
-  /// `discard`: drops unsaved edits of the deck that is open.
-  void open(const std::filesystem::path& deck, bool discard = false);
+  /// What happens to unsaved edits of the document that is open: they are in the way, are dropped, or stay in their journal until that
+  /// deck is opened again.
+  enum class Unsaved : std::uint8_t { refuse, discard, keep };
+  void open(const std::filesystem::path& deck, Unsaved unsaved = Unsaved::refuse);
+  /// Closes the document and drops its unsaved edits. `then` gets the answer.
+  void close(Then then);
   /// A deck that the server refused to open because of unsaved edits; each is returned once.
   std::optional<std::filesystem::path> take_refused() { return std::exchange(refused_, std::nullopt); }
   /// `remark`: added to the notice about the saving. `then` gets the answer last.
@@ -150,6 +154,8 @@ class ModelLink {
   void took_state(const ipc::DocumentState& state);
   void is_document(const std::string& path);
   void say_warnings();
+  void say_recovered(const ipc::DocumentState& state);
+  void took_opened(const ipc::Answer& answer, const std::filesystem::path& whole, const std::string& kept);
   void took_saved(const ipc::Saved& saved, bool becomes, const std::string& remark);
   void fetch_snapshot();
   void took_snapshot(const ipc::Answer& answer);
@@ -160,13 +166,14 @@ class ModelLink {
   void ask_count();
   void send_step();
   void drop_drag(const char* how);
-  bool is_refused_for_edits(const ipc::Failed& failed) const;
   void say_failed(const ipc::Failed& failed, const std::string& if_stopped);
   void say_report(const mesh::document::EditReport& report);
   void say(Notice::Kind kind, std::string text);
 
   std::filesystem::path socket_;
   std::optional<std::filesystem::path> deck_;     ///< what should be open
+  bool opening_ = false;                          ///< the server was asked to open it and hasn't answered
+  std::uint64_t recovered_said_ = 0;              ///< the connection whose recovered edits were announced
   std::optional<std::filesystem::path> refused_;  ///< not opened because of unsaved edits
   Clock& clock_;
   Trace trace_;

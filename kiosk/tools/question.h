@@ -9,7 +9,7 @@
 
 namespace prismesh::kiosk::tools {
 
-enum class Reply : std::uint8_t { cancel, save, discard, write };
+enum class Reply : std::uint8_t { cancel, save, keep, discard, write };
 
 struct Question {
   /// Files or folders that something would happen to.

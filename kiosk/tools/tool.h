@@ -62,7 +62,7 @@ class Tool {
   virtual Result<void> follow() { return {}; }
   /// The renderer has another model or another state of it.
   virtual void model_changed() {}
-  /// The model is of another document than before.
+  /// The model is of another document than before: what was picked, pulled or typed on the old one is given up.
   virtual void document_changed() {}
   /// The view has changed, with the pointer there if a gesture did it.
   virtual void view_moved(const Pointer& /*pointer*/) {}

@@ -202,6 +202,7 @@ std::uint64_t Journal::records() const { return impl_->records; }
 bool Journal::cut_torn_tail() const { return impl_->cut_torn_tail; }
 const std::optional<Error>& Journal::damage() const { return impl_->damage; }
 bool Journal::takes_edits() const { return impl_->takes_edits; }
+Result<void> Journal::check_in_place() const { return impl_->file.check_untouched(); }
 bool Journal::is_whole() const { return impl_->takes_edits && impl_->file.check_untouched().has_value(); }
 
 Result<Journal> Journal::create(const std::filesystem::path& path, const Document& document) {

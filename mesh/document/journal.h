@@ -61,6 +61,8 @@ class Journal {
   bool takes_edits() const;
   /// Whether the file under this name is this journal and holds its records only: nothing that is damaged or that something else wrote.
   bool is_whole() const;
+  /// Errors: the file under this name isn't this journal any more, so what it holds won't be found at the next opening.
+  Result<void> check_in_place() const;
 
  private:
   struct Impl;

@@ -125,6 +125,34 @@ TEST(TypedNumberTest, what_a_tool_makes_of_them) {
   EXPECT_FALSE(begins_number("") || begins_number("e"));
 }
 
+TEST(TypedNumberTest, the_hint_says_where_a_number_goes) {
+  const Vec3 way(0.6, 0, -0.8);
+  EXPECT_EQ(typed_hint(Under::lift_handle, way), "distance along the arrow, 0.6 0 -0.8");
+  EXPECT_EQ(typed_hint(Under::lift_handle, std::nullopt), "distance, each node along its own normal");
+  EXPECT_EQ(typed_hint(Under::turn_handle, Vec3::UnitY()), "degrees about 0 1 0");
+  for (const Under handle : {Under::slide_handle, Under::move_handle}) {
+    EXPECT_EQ(typed_hint(handle, way), "x y z, or how far along 0.6 0 -0.8");
+    EXPECT_EQ(typed_hint(handle, std::nullopt), "x y z in the deck's axes") << "one number would be refused";
+  }
+}
+
+TEST(ShapingOptionsTest, what_is_of_a_deck_does_not_outlive_it) {
+  ShapingOptions options;
+  options.flat = 0.3;
+  options.each_normal = true;
+  options.symmetry = DeckAxis::y;
+  options.max_move = 5;
+  options.symmetry_place = 100;
+  options.along = {"x", Vec3::UnitX()};
+  ShapingOptions left = options;
+  left.max_move.reset();
+  left.symmetry_place.reset();
+  EXPECT_EQ(for_another_deck(options), left);
+  options.along = picked_falloff("two nodes", Vec3(3, 0, 4));
+  left.along = {};
+  EXPECT_EQ(for_another_deck(options), left);
+}
+
 TEST(AxisPickTest, two_different_nodes_make_an_axis) {
   AxisPick pick;
   EXPECT_FALSE(pick.clicked(Vec3(1, 2, 3))) << "nobody picks";

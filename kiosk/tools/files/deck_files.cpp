@@ -14,7 +14,13 @@ Question::Choice choice(Reply reply, std::string label, char key) {
   return {reply, std::move(label), display::letter(key), std::string(1, key)};
 }
 
-Question::Choice cancel() { return {Reply::cancel, "Cancel", display::Key::escape, "Esc"}; }
+Question::Choice cancel(std::string label = "Cancel") { return {Reply::cancel, std::move(label), display::Key::escape, "Esc"}; }
+
+/// What can be done about unsaved edits. `stay`: what happens if nothing is.
+std::vector<Question::Choice> unsaved_choices(const std::string& stay) {
+  return {choice(Reply::save, "Save", 'S'), choice(Reply::keep, "Keep for next time", 'K'), choice(Reply::discard, "Discard", 'D'),
+          cancel(stay)};
+}
 
 /// "the file", "3 files": what a button speaks of.
 std::string counted(std::size_t count, const char* one, const char* several) {
@@ -76,19 +82,61 @@ void DeckFiles::ask_about_edits(const std::filesystem::path& deck) {
   const std::string open = file_name(about_);
   Question& question = question_.emplace();
   question.title = fmt::format("Save {} before {} is opened?", open, file_name(deck));
-  question.text = fmt::format("{} has edits that aren't saved. If you discard them, the deck stays on disk as it was last saved.", open);
-  question.choices = {choice(Reply::save, "Save", 'S'), choice(Reply::discard, "Discard", 'D'), cancel()};
+  question.text = fmt::format(
+      "{0} has edits that aren't saved. If you keep them for next time, they come back when {0} is opened again. If you discard them, the "
+      "deck stays on disk as it was last saved.",
+      open);
+  question.choices = unsaved_choices("Go on with " + open);
   trace_.line("asks unsaved " + deck.string());
+}
+
+bool DeckFiles::has_unsaved_edits() const {
+  if (!link_.connected()) return false;  // nothing can be done about them from here; they are in the journal
+  if (link_.editing()) return true;
+  if (const auto& snapshot = link_.snapshot()) return snapshot->info().changed || !link_.up_to_date();
+  return link_.state() && link_.state()->open && link_.state()->changed;
+}
+
+void DeckFiles::quit() {
+  if (has_unsaved_edits())
+    ask_about_quitting();
+  else
+    quits_ = true;
+}
+
+void DeckFiles::ask_about_quitting() {
+  about_ = open_deck();
+  quitting_ = true;
+  const std::string open = file_name(about_);
+  Question& question = question_.emplace();
+  question.title = fmt::format("Save {} before you quit?", open);
+  question.text = fmt::format(
+      "{} has edits that aren't saved. If you keep them for next time, they come back with the deck at the next start. If you discard "
+      "them, "
+      "the deck stays on disk as it was last saved.",
+      open);
+  question.choices = unsaved_choices("Stay");
+  trace_.line("asks quit " + about_);
+}
+
+void DeckFiles::reply_about_quitting(Reply reply) {
+  const auto quit_if = [this](bool done) { quits_ = quits_ || done; };
+  if (reply == Reply::keep) quits_ = true;
+  if (reply == Reply::save)
+    link_.save(ipc::Save{}, {}, [quit_if](const ipc::Answer& answer) { quit_if(std::holds_alternative<ipc::Saved>(answer)); });
+  if (reply == Reply::discard) link_.close([quit_if](const ipc::Answer& answer) { quit_if(std::holds_alternative<ipc::Done>(answer)); });
 }
 
 void DeckFiles::reply(Reply reply) {
   if (!question_) return;
   question_.reset();
   trace_.line("asks nothing");
+  if (std::exchange(quitting_, false)) return reply_about_quitting(reply);
   switch (reply) {
     case Reply::cancel: return;
     case Reply::write: return write(std::exchange(to_write_, {}), remark_);
-    case Reply::discard: return link_.open(to_open_, true);
+    case Reply::keep: return link_.open(to_open_, ModelLink::Unsaved::keep);
+    case Reply::discard: return link_.open(to_open_, ModelLink::Unsaved::discard);
     case Reply::save:
       link_.save(ipc::Save{}, {}, [this, deck = to_open_](const ipc::Answer& answer) {
         if (std::holds_alternative<ipc::Saved>(answer)) link_.open(deck);
@@ -98,6 +146,11 @@ void DeckFiles::reply(Reply reply) {
 
 void DeckFiles::follow() {
   if (question_ && about_ != open_deck()) reply(Reply::cancel);
+  // Another client may have saved the edits meanwhile.
+  if (question_ && quitting_ && link_.connected() && !has_unsaved_edits()) {
+    reply(Reply::cancel);
+    quits_ = true;
+  }
   if (const std::optional<std::filesystem::path> refused = link_.take_refused()) ask_about_edits(*refused);
 }
 

@@ -24,6 +24,11 @@ class DeckFiles {
   void save(const std::string& remark);
   void save_elsewhere(const std::filesystem::path& path, Elsewhere how, const std::string& remark);
 
+  /// Asks whether the kiosk may end, if there are unsaved edits.
+  void quit();
+  /// It may.
+  bool quits() const { return quits_; }
+
   /// The question that waits for a reply.
   const std::optional<Question>& question() const { return question_; }
   void reply(Reply reply);
@@ -33,12 +38,17 @@ class DeckFiles {
  private:
   std::string open_deck() const;
   void write(const ipc::Save& request, const std::string& remark);
+  bool has_unsaved_edits() const;
   void ask_about_edits(const std::filesystem::path& deck);
+  void ask_about_quitting();
+  void reply_about_quitting(Reply reply);
   void ask_about_writing(const ipc::Save& request, const std::string& remark, const ipc::SaveWould& would);
 
   ModelLink& link_;
   Trace trace_;
   std::optional<Question> question_;
+  bool quitting_ = false;  ///< the question is about that
+  bool quits_ = false;
   std::string about_;              ///< the deck that was open when the question was asked
   std::filesystem::path to_open_;  ///< once the unsaved edits are saved or given up
   ipc::Save to_write_;             ///< if files may be replaced

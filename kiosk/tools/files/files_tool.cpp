@@ -11,7 +11,7 @@ using display::letter;
 
 constexpr std::string_view kName = "files";
 
-enum class FilesCommand : std::uint8_t { open, save, save_as, save_copy };
+enum class FilesCommand : std::uint8_t { open, save, save_as, save_copy, quit };
 
 constexpr Command command_of(FilesCommand command) { return {kName, static_cast<std::uint8_t>(command)}; }
 
@@ -22,11 +22,14 @@ constexpr std::array kKeys = {
                "save as another deck, and go on with that one"},
     KeyBinding{letter('C'), true, true, command_of(FilesCommand::save_copy), Menu::file, "Ctrl+Shift+C",
                "save a copy, and go on with this deck"},
+    KeyBinding{letter('Q'), true, false, command_of(FilesCommand::quit), Menu::file, "Ctrl+Q", "quit; with unsaved edits it asks first"},
 };
 
 }  // namespace
 
 std::span<const KeyBinding> keys() { return kKeys; }
+
+Command quit_command() { return command_of(FilesCommand::quit); }
 
 std::string_view FilesTool::name() const { return kName; }
 
@@ -41,13 +44,23 @@ void FilesTool::command(std::uint8_t number, const Pointer&) {
     case FilesCommand::save_copy:
       if (context_.shown.snapshot) dialog(PathDialog::save_copy);
       break;
+    case FilesCommand::quit:
+      deck_files_.quit();
+      context_.quits = deck_files_.quits();
+      break;
   }
 }
 
 Result<void> FilesTool::prepare() {
   deck_files_.follow();
+  context_.quits = deck_files_.quits();
   if (question() != nullptr) set_cover(context_, Cover::none);
   return {};
+}
+
+void FilesTool::reply(Reply reply) {
+  deck_files_.reply(reply);
+  context_.quits = deck_files_.quits();
 }
 
 std::string FilesTool::save_remark() const {

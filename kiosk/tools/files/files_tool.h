@@ -13,6 +13,8 @@
 namespace prismesh::kiosk::tools::files {
 
 std::span<const KeyBinding> keys();
+/// Ends the kiosk; asks first, if there are unsaved edits.
+Command quit_command();
 
 class FilesTool final : public Tool {
  public:
@@ -24,7 +26,7 @@ class FilesTool final : public Tool {
   void draw_dialog(int kind, bool opened, PanelLayout& layout) override;
   bool dialog_covers(int) const override { return true; }
   const Question* question() const override { return deck_files_.question() ? &*deck_files_.question() : nullptr; }
-  void reply(Reply reply) override { deck_files_.reply(reply); }
+  void reply(Reply reply) override;
 
  private:
   std::string save_remark() const;

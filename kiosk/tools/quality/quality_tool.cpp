@@ -242,6 +242,14 @@ void QualityTool::list_criteria() {
   criteria_files_ = mesh::quality::criteria_files_in(deck.parent_path());
 }
 
+/// The limits are lengths in the old deck's unit, the criteria files lie beside it.
+void QualityTool::document_changed() {
+  leave_error();
+  limits_ = {};
+  if (context_.open.dialog.owner == this) close_dialog(context_);
+  if (!criteria_files_.empty()) list_criteria();
+}
+
 void QualityTool::draw_left(PanelLayout& layout) {
   QualityFacts facts;
   facts.figures = link_.figures();

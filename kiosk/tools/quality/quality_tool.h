@@ -27,7 +27,7 @@ class QualityTool final : public Tool {
   std::string_view name() const override;
   void command(std::uint8_t number, const Pointer& pointer) override;
   Result<void> follow() override;
-  void document_changed() override { leave_error(); }
+  void document_changed() override;
   void add_to_picture(render::Picture& picture) const override;
   std::string glyphs_hidden() const override;
   std::string_view panel_name() const override { return "quality"; }

@@ -1,5 +1,7 @@
 #include "kiosk/tools/shaping/shaping_options.h"
 
+#include <algorithm>
+
 namespace prismesh::kiosk::tools::shaping {
 
 using mesh::Vec3;
@@ -15,6 +17,13 @@ Vec3 unit(DeckAxis axis) {
 }
 
 DeckAxis next(DeckAxis axis) { return static_cast<DeckAxis>((static_cast<int>(axis) + 1) % 4); }
+
+ShapingOptions for_another_deck(ShapingOptions options) {
+  if (std::find(kDeckAxisNames.begin(), kDeckAxisNames.end(), options.along.what) == kDeckAxisNames.end()) options.along = {};
+  options.max_move.reset();
+  options.symmetry_place.reset();
+  return options;
+}
 
 std::string_view name_of(mesh::shape::FreeEnds ends) {
   switch (ends) {

@@ -46,6 +46,9 @@ struct ShapingOptions {
 };
 inline constexpr double kFlatStep = 0.1;
 
+/// What is left of the options when another deck is opened: nothing that was picked on the old one or is a length or a place in it.
+ShapingOptions for_another_deck(ShapingOptions options);
+
 /// A part of the handle, and what it pulls.
 struct ShapedHandle {
   Under handle = Under::lift_handle;

@@ -119,6 +119,19 @@ bool ShapingTool::begin_number(const std::string& text, const Pointer& pointer) 
   return true;
 }
 
+/// Where a number that is typed goes; nothing: see typed_hint.
+std::optional<Vec3> ShapingTool::typed_direction() const {
+  const std::optional<Axis>& axis = pull_ ? pull_->pull.axis() : axis_;
+  switch (handle_) {
+    case Under::turn_handle: return axis ? std::optional(axis->direction) : std::nullopt;
+    case Under::slide_handle:
+    case Under::move_handle: return pulled_.by.norm() > 0 ? std::optional(Vec3(pulled_.by.normalized())) : std::nullopt;
+    default: break;
+  }
+  if (options_.each_normal || (!pull_ && !anchor_)) return std::nullopt;
+  return pull_ ? pull_->pull.direction() : arrow_direction(aim(context_.view), *anchor_);
+}
+
 void ShapingTool::enter_number(const std::string& text) {
   if (typing_.what == Typing::For::pull)
     enter_pull(text);

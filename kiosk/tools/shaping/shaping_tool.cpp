@@ -117,9 +117,15 @@ void ShapingTool::model_changed() {
   context_.follow_soon = true;
 }
 
+/// Nothing that was picked, pulled or typed on the old document goes on.
 void ShapingTool::document_changed() {
   axis_.reset();
   axis_pick_.cancel();
+  pulled_ = {};
+  handle_ = Under::lift_handle;
+  options_ = for_another_deck(std::move(options_));
+  followed_.ask(std::nullopt, 0);
+  if (is_typing()) close_dialog(context_);
 }
 
 // --- picture and panels ---
@@ -177,10 +183,11 @@ void ShapingTool::draw_document_section(PanelLayout&) {
 void ShapingTool::draw_dialog(int, bool opened, PanelLayout& layout) {
   const bool pull = typing_.what == Typing::For::pull;
   panels::NumberFacts facts;
-  facts.title = pull                                      ? std::string(name_of(handle_))
-                : typing_.what == Typing::For::move_limit ? "No node moves farther than"
-                                                          : "The mirror stands at";
-  facts.hint = pull ? std::string(typed_hint(handle_)) : "a number; nothing takes it away";
+  const std::string mirror = options_.symmetry == DeckAxis::none
+                                 ? "The mirror stands at"
+                                 : fmt::format("The mirror stands at {} =", kDeckAxisNames[static_cast<std::size_t>(options_.symmetry)]);
+  facts.title = pull ? std::string(name_of(handle_)) : typing_.what == Typing::For::move_limit ? "No node moves farther than" : mirror;
+  facts.hint = pull ? typed_hint(handle_, typed_direction()) : "a number; nothing takes it away";
   facts.begun = typing_.begun;
   facts.problem = typing_.problem;
   if (const std::optional<std::string> entered = panels::number_box(facts, layout.picture, opened, entry_))

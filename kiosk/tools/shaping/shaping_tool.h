@@ -95,6 +95,7 @@ class ShapingTool final : public Tool {
   void enter_number(const std::string& text);
   void enter_pull(const std::string& text);
   void enter_option(const std::string& text);
+  std::optional<Vec3> typed_direction() const;
   void next_handle();
   void change_option(ShapingCommand command);
 

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "kiosk/tools/shaping/falloff_direction.h"
 #include "kiosk/tools/typed_numbers.h"
 
 namespace prismesh::kiosk::tools::shaping {
@@ -28,12 +29,13 @@ Result<Pull> typed_displacement(Under handle, std::string_view text, const Pull&
   return pull;
 }
 
-std::string_view typed_hint(Under handle) {
+std::string typed_hint(Under handle, const std::optional<Vec3>& along) {
+  const std::string way = along ? components_text(*along) : std::string();
   switch (handle) {
-    case Under::turn_handle: return "degrees";
+    case Under::turn_handle: return "degrees about " + way;
     case Under::slide_handle:
-    case Under::move_handle: return "x y z, or how far";
-    default: return "distance";
+    case Under::move_handle: return along ? "x y z, or how far along " + way : "x y z in the deck's axes";
+    default: return along ? "distance along the arrow, " + way : "distance, each node along its own normal";
   }
 }
 

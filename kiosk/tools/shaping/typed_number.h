@@ -1,6 +1,8 @@
 // Numbers that are typed for a tool: what may be typed, and what it means.
 #pragma once
 
+#include <optional>
+#include <string>
 #include <string_view>
 
 #include "base/error.h"
@@ -12,7 +14,8 @@ namespace prismesh::kiosk::tools::shaping {
 /// axes), or one: so far the way that `pulled` goes. Errors: a sentence.
 Result<Pull> typed_displacement(Under handle, std::string_view text, const Pull& pulled);
 
-/// What may be typed, for a person: "x y z, or how far".
-std::string_view typed_hint(Under handle);
+/// What may be typed and where it goes, for a person: "x y z, or how far along 0 0.6 0.8". `along`: the arrow, the axis of a turn, the way
+/// of the last slide or move; nothing: a lift along each node's own normal, or a slide or move that one number isn't enough for.
+std::string typed_hint(Under handle, const std::optional<Vec3>& along);
 
 }  // namespace prismesh::kiosk::tools::shaping

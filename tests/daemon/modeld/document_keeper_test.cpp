@@ -448,6 +448,53 @@ TEST_F(Keeping, unsaved_edits_are_not_discarded_without_request) {
   EXPECT_EQ(first.state().recovered_edits, 0u);
 }
 
+TEST_F(Keeping, unsaved_edits_that_are_kept_come_back_with_their_deck) {
+  const fs::path deck = folder_.sheet(), other = folder_.two_files();
+  const std::string before = test::whole_file(deck);
+  DocumentKeeper first = keeper();
+  const auto keep = [&](const fs::path& path) {
+    ipc::Open open = request(path);
+    open.keep = true;
+    const Result<bool> opened = first.open(open, {});
+    ASSERT_TRUE(opened) << opened.error().text();
+  };
+  ASSERT_TRUE(first.open(request(deck), {}));
+  ASSERT_TRUE(first.edit(move_edit(1313, 0.25)));
+  ASSERT_TRUE(first.edit(move_edit(1313, 0.25)));
+  const double moved = height(first, 1313);
+  keep(other);
+  EXPECT_EQ(first.state().path, other.string());
+  EXPECT_EQ(test::whole_file(deck), before);
+  ASSERT_TRUE(first.edit(move_edit(1, 0.5)));
+  keep(deck);
+  EXPECT_EQ(height(first, 1313), moved);
+  EXPECT_EQ(first.state().recovered_edits, 2u);
+  EXPECT_TRUE(first.changed());
+  ASSERT_TRUE(first.close(false, true));
+  EXPECT_FALSE(first.is_open());
+  EXPECT_FALSE(*keeper().reopen({})) << "it was closed";
+  first = keeper();
+  ASSERT_TRUE(first.open(request(deck), {}));
+  EXPECT_EQ(height(first, 1313), moved);
+  ASSERT_TRUE(first.save(std::nullopt));
+  EXPECT_EQ(first.state().recovered_edits, 0u) << "they are in the deck";
+  ASSERT_TRUE(first.open(request(other), {}));
+  EXPECT_EQ(height(first, 1), 0.5);
+  EXPECT_EQ(first.state().recovered_edits, 1u);
+}
+
+TEST_F(Keeping, edits_whose_journal_is_gone_cant_be_kept) {
+  const fs::path deck = folder_.sheet();
+  DocumentKeeper first = keeper();
+  ASSERT_TRUE(first.open(request(deck), {}));
+  ASSERT_TRUE(first.edit(move_edit(1313, 0.25)));
+  fs::remove(StateFolder(folder_.state()).journal(deck, first.document().deck->content));
+  const Result<void> closed = first.close(false, true);
+  ASSERT_FALSE(closed);
+  EXPECT_NE(closed.error().message.find("the journal has been deleted"), std::string::npos) << closed.error().text();
+  EXPECT_TRUE(first.changed()) << "they are still there";
+}
+
 TEST_F(Keeping, an_edit_that_cant_be_journalled_is_not_applied) {
   const fs::path deck = folder_.sheet();
   DocumentKeeper first = keeper();
