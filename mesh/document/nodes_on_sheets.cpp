@@ -95,11 +95,17 @@ double reach_of(const Model& model, ShellIndex shell, bool tied) {
 
 using Cell = std::array<std::int64_t, 3>;
 
-/// A table of bits for the cells of a grid that hold a point; it may have false positives.
+/// A table of bits for the cells of a grid that hold a point; it may have false positives. It grows with the points, so that their share
+/// stays small: a shell asks for some eight cells.
 class CellTable {
  public:
-  CellTable(const Model& model, const std::vector<NodeOnSheet>& points, double width) : width_(width), bits_(kBits, 0) {
-    for (const NodeOnSheet& point : points) bits_[slot(cell_of(model.position(point.node)))] = 1;
+  CellTable(const Model& model, const std::vector<NodeOnSheet>& points, double width) : width_(width) {
+    while (std::size_t{1} << log2_bits_ < kBitsForAPoint * points.size()) ++log2_bits_;
+    words_.assign((std::size_t{1} << log2_bits_) / 64, 0);
+    for (const NodeOnSheet& point : points) {
+      const std::size_t bit = slot(cell_of(model.position(point.node)));
+      words_[bit / 64] |= std::uint64_t{1} << bit % 64;
+    }
   }
   Cell cell_of(const Vec3& point) const {
     Cell cell;
@@ -115,20 +121,21 @@ class CellTable {
     for (std::int64_t x = a[0]; x <= b[0]; ++x)
       for (std::int64_t y = a[1]; y <= b[1]; ++y)
         for (std::int64_t z = a[2]; z <= b[2]; ++z)
-          if (bits_[slot({x, y, z})] != 0) return true;
+          if (const std::size_t bit = slot({x, y, z}); (words_[bit / 64] >> bit % 64 & 1) != 0) return true;
     return false;
   }
 
  private:
-  static constexpr std::size_t kBits = std::size_t{1} << 20;
-  static std::size_t slot(const Cell& cell) {
+  static constexpr std::size_t kBitsForAPoint = 64;
+  std::size_t slot(const Cell& cell) const {
     const auto mixed = static_cast<std::uint64_t>(cell[0]) * 0x9e3779b97f4a7c15u ^
                        static_cast<std::uint64_t>(cell[1]) * 0xc2b2ae3d27d4eb4fu ^
                        static_cast<std::uint64_t>(cell[2]) * 0x165667b19e3779f9u;
-    return static_cast<std::size_t>(mixed >> 44);
+    return static_cast<std::size_t>(mixed >> (64 - log2_bits_));
   }
   double width_;
-  std::vector<std::uint8_t> bits_;
+  int log2_bits_ = 20;
+  std::vector<std::uint64_t> words_;
 };
 
 /// Shells that may have a point within their reach.
@@ -136,8 +143,9 @@ ShellSet shells_near(const Model& model, const std::vector<NodeOnSheet>& points)
   double sum = 0;
   std::size_t asked = 0;
   for (std::size_t s = 0; s < model.shell_count(); s += 64)
-    if (!model.is_removed(ShellIndex(s))) sum += size_of(model, ShellIndex(s)), ++asked;
-  const double width = asked > 0 && sum > 0 && std::isfinite(sum) ? 2 * sum / static_cast<double>(asked) : 1.0;
+    if (!model.is_removed(ShellIndex(s))) sum += size_of(model, ShellIndex(s)) + 2 * reach_of(model, ShellIndex(s), true), ++asked;
+  // As wide as a shell with its reach, which is the thickness where shells are smaller than that: then it lies in eight cells or so.
+  const double width = asked > 0 && sum > 0 && std::isfinite(sum) ? sum / static_cast<double>(asked) : 1.0;
   const CellTable table(model, points, width);
   std::vector<ShellSet> found((model.shell_count() + kSearchGrain - 1) / kSearchGrain);
   parallel_for(model.shell_count(), kSearchGrain, [&](std::size_t begin, std::size_t end) {

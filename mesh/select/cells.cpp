@@ -106,19 +106,42 @@ Walk Cells::walk(Cell cell, std::size_t position, std::size_t max_edges) {
   return walk;
 }
 
-Walk::Crossing Cells::crossing(Edge edge, const Vec3& from, const Vec3& into, const Vec3& normal) const {
-  const Vec3& a = model_.position(edge.low);
-  const Vec3 along = model_.position(edge.high) - a, middle = 0.5 * (a + model_.position(edge.high));
+namespace {
+
+/// From the middle of an edge into the cells on its sides, at right angles to it.
+struct Sides {
+  Vec3 from, into;
+};
+Sides sides_at(const Model& model, Edge edge, const Vec3& from, const Vec3& into) {
+  const Vec3& a = model.position(edge.low);
+  const Vec3 along = model.position(edge.high) - a, middle = 0.5 * (a + model.position(edge.high));
   const double length2 = along.squaredNorm();
   const auto away = [&](const Vec3& centre) {
     const Vec3 out = centre - middle;
     return length2 > 0 ? Vec3(out - along * (out.dot(along) / length2)) : out;
   };
-  const Vec3 one = away(from), other = away(into);
-  double degrees = deterministic_atan2(one.cross(other).norm(), -one.dot(other)) * kDegrees;
-  if (other.dot(normal) < 0) degrees = -degrees;
-  const double width = 2 * std::min(one.norm(), other.norm());
+  return {away(from), away(into)};
+}
+
+}  // namespace
+
+Walk::Crossing Cells::crossing(Edge edge, const Vec3& from, const Vec3& into, const Vec3& normal) const {
+  const Sides sides = sides_at(model_, edge, from, into);
+  double degrees = deterministic_atan2(sides.from.cross(sides.into).norm(), -sides.from.dot(sides.into)) * kDegrees;
+  if (sides.into.dot(normal) < 0) degrees = -degrees;
+  const double width = 2 * std::min(sides.from.norm(), sides.into.norm());
   return {degrees, width > 0 ? degrees / width : 0};
+}
+
+bool Cells::is_flat_at(const Cell& cell, std::size_t position, double radians) {
+  const ShellIndex next = beyond(cell, position);
+  if (!next.valid()) return true;
+  const std::optional<Cell> other = of(next);
+  const Sides sides =
+      sides_at(model_, cell.edge(position), centre_of(model_, cell), other ? centre_of(model_, *other) : centre_of(model_, next));
+  const double straight = -sides.from.dot(sides.into);
+  // The tangent of so small an angle is the angle.
+  return straight > 0 && sides.from.cross(sides.into).squaredNorm() <= radians * radians * straight * straight;
 }
 
 /// The quad of two triangles that share an edge, in the first one's direction.

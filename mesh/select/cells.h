@@ -55,6 +55,8 @@ class Cells {
   ShellIndex only_neighbour(ShellIndex shell, Edge edge) const;
   /// The same beyond a cell's edge.
   ShellIndex beyond(const Cell& cell, std::size_t position) const;
+  /// Whether the sheet bends at a cell's edge by a small angle at most, or ends there. Cheaper than a walk.
+  bool is_flat_at(const Cell& cell, std::size_t position, double radians);
   /// Walks from a cell over its edge `position` and opposite edges, over max_edges at most (no more than Walk holds).
   Walk walk(Cell cell, std::size_t position, std::size_t max_edges);
 

@@ -19,6 +19,8 @@ constexpr int kMaxCrooked = 3;         ///< of these, columns whose own rows don
 constexpr double kCrooked = 1.0 / 15;  ///< of the angle
 constexpr double kMaxWidths = 10;      ///< rows of a fillet whose widths differ by a greater factor aren't looked for
 
+constexpr double kDegreesOfRadian = 57.29577951308232;
+
 /// What the rows around a cell are. Crooked: one of the cell's edges bends. Bent: they bend like a fillet, but beside them nothing is flat.
 enum class Rows : std::uint8_t { nothing, crooked, bent, fillet };
 
@@ -106,6 +108,11 @@ int Fillets::rows_across(const Cell& cell, std::size_t first) {
   if ((known >> shift & 8) == 0) {
     // Most of a sheet is flat: its nearest edges tell.
     const double least = angle_degrees_ / static_cast<double>(kMaxRows + 1) * kMinOfPeak / kMaxWidths;
+    const double radians = least / kDegreesOfRadian;
+    if (cells_->is_flat_at(kept, position, radians) && cells_->is_flat_at(kept, position + 2, radians)) {
+      known = static_cast<std::uint8_t>(known | 8 << shift);
+      return 0;
+    }
     const Walk one = cells_->walk(kept, position, 1), other = cells_->walk(kept, position + 2, 1);
     const auto bend = [](const Walk& walk) { return walk.count > 0 ? walk.edges[0].degrees : 0.0; };
     const bool is_crooked = std::max(std::abs(bend(one)), std::abs(bend(other))) > kCrooked * angle_degrees_;
