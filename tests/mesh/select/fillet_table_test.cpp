@@ -121,20 +121,20 @@ void expect_regions(const Sheet& sheet) {
 }
 
 TEST(FilletTable, a_bead_that_ends_near_the_fillet_opens_no_gap) {
-  for (const int rows : {1, 2, 3, 4, 5, 6, 7, 8})
-    for (const double bead : {-1.0, 0.0, 2.0, 4.0, 7.0, 12.0, 20.0}) expect_regions({rows, bead, 90, 0});
+  for (const int rows : {1, 2, 3, 4, 6, 8})
+    for (const double bead : {-1.0, 0.0, 4.0, 12.0, 20.0}) expect_regions({rows, bead, 90, 0});
 }
 
 TEST(FilletTable, nor_do_other_angles) {
   for (const int rows : {2, 4, 8})
     for (const double angle : {45.0, 60.0, 120.0})
-      for (const double bead : {0.0, 4.0, 12.0}) expect_regions({rows, bead, angle, 0});
+      for (const double bead : {0.0, 4.0}) expect_regions({rows, bead, angle, 0});
 }
 
 TEST(FilletTable, nor_do_triangles) {
-  for (const int rows : {2, 3, 4, 6, 8})
-    for (const int triangles : {5, 10, 25, 50, 75, 100})
-      for (const double bead : {-1.0, 4.0, 12.0}) expect_regions({rows, bead, 90, triangles});
+  for (const int rows : {2, 4, 8})
+    for (const int triangles : {10, 50, 100})
+      for (const double bead : {-1.0, 4.0}) expect_regions({rows, bead, 90, triangles});
 }
 
 }  // namespace
