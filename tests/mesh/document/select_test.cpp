@@ -1,7 +1,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "mesh/document/scope.h"
+#include "mesh/model/topology_change.h"
+#include "mesh/select/expression.h"
 #include "tests/mesh/document/document_fixture.h"
+#include "tests/mesh/document/restructuring.h"
 
 namespace prismesh::mesh::document {
 namespace {
@@ -22,6 +26,35 @@ TEST(Select, modes_combine_nodes) {
   EXPECT_EQ(document.current().selected_nodes, 3u);
   must_apply(document, R"({"edit":"select","expr":"9"})");
   EXPECT_THAT(selected_ids(document), ElementsAre(9));
+}
+
+TEST(Select, an_element_of_any_class_names_its_part) {
+  Document document = make_document(make_assembly());
+  const auto chosen = [&](const std::string& expression) {
+    must_apply(document, R"({"edit":"select","kind":"part","expr":")" + expression + "\"}");
+    std::vector<std::int64_t> ids;
+    for (std::size_t s = 0; s < document.current().model.parts->size(); ++s)
+      if (const Result<select::Chosen> parts = select::evaluate(document.current().model, expression, select::EntityKind::part); parts)
+        for (const PartIndex part : parts->parts)
+          if (part.value == s) ids.push_back((*document.current().model.parts)[s].id);
+    return ids;
+  };
+  EXPECT_THAT(chosen("beam:9"), ElementsAre(3));
+  EXPECT_THAT(chosen("solid:1"), ElementsAre(4));
+  EXPECT_THAT(chosen("shell:1,shell:8"), ElementsAre(1, 2));
+}
+
+TEST(Scopes, of_all_leave_out_what_was_removed) {
+  const Folder folder;
+  Document document = open_text(folder / "sheet.k", sheet_deck(4, 4));
+  must_apply(document, R"({"edit":"split","at":["shell:6"]})");
+  must_apply(document, R"({"edit":"merge","at":["shell:6","shell:17"]})");
+  const Model& model = document.current().model;
+  ASSERT_LT(live_shells(model), model.shell_count()) << "one of the triangles is gone";
+  const Result<ShellSet> all = shells_in(document, Scope::all, "repair");
+  ASSERT_TRUE(all);
+  EXPECT_EQ(all->size(), live_shells(model));
+  for (const ShellIndex shell : *all) EXPECT_FALSE(model.is_removed(shell));
 }
 
 TEST(Select, what_names_everything_again_and_again_is_refused_where_it_is_too_much) {
