@@ -93,7 +93,7 @@ std::vector<NewIdsCase> new_ids_cases() {
       {"ELGEN with defaults", kAbaqus, std::string(kBeamNodes) + "*ELGEN, ELSET=B\n19, 4\n", {103}, {23}},
       {"ELGEN in layers", kAbaqus, std::string(kBeamNodes) + "*ELGEN, ELSET=B\n19, 2, 2, 1, 2, 10, 4, 2, 100, 10\n", {103}, {35}},
       {"ELCOPY", kAbaqus, "*ELCOPY, ELEMENT SHIFT=10, OLD SET=P, SHIFT NODES=100\n", {29}, {29}},
-      {"faces of cohesive elements", kAbaqus, "*ELEMENT, TYPE=COH3D8, OFFSET=8\n30, 1, 2, 9, 8\n", {45}, {31}},
+      {"faces of cohesive elements", kAbaqus, "*ELEMENT, TYPE=COH3D8, OFFSET=8\n30, 1, 2, 9, 8\n", {45}, {19}},
       // LS-DYNA
       {"a structured mesh",
        kDyna,
