@@ -230,6 +230,14 @@ bool adds_failures(const Patch& patch) {
   return new_one_fails && failing_now >= failing_before;
 }
 
+bool has_new_failure(const Patch& patch) {
+  for (const auto& [shell, was] : patch.old_shells())
+    if (patch.shell(shell).is_alive && was.state.fail == 0 && patch.shell(shell).state.fail != 0) return true;
+  const std::vector<LocalShell> changed = patch.changed_shells();
+  return std::any_of(changed.begin(), changed.end(),
+                     [&](LocalShell shell) { return patch.is_new_since_begin(shell) && patch.shell(shell).state.fail != 0; });
+}
+
 bool stays_on_surface(const RepairContext& context) {
   const Patch& patch = context.patch;
   std::vector<Corners> now, before;

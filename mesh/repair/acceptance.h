@@ -34,6 +34,9 @@ bool conforms(const Patch& patch);
 /// Whether a shell that passed fails now, or a new one fails while not fewer shells fail than before.
 bool adds_failures(const Patch& patch);
 
+/// Whether a new shell fails, or one that passed.
+bool has_new_failure(const Patch& patch);
+
 /// Whether the changed shells stay on the surface: no point of their edges and centres is farther off than the options allow, or than the
 /// shells before.
 bool stays_on_surface(const RepairContext& context);

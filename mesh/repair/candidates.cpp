@@ -248,6 +248,23 @@ std::vector<Candidate> splits_of(const RepairContext& context, LocalShell shell)
   return found;
 }
 
+std::vector<Candidate> single_operations_at(const RepairContext& context, LocalShell shell) {
+  std::vector<Candidate> found = splits_of(context, shell);
+  const Patch& patch = context.patch;
+  const Corners corners = patch.shell(shell).corners;
+  add_redivisions(context, shell, found);
+  for (int e = 0; e < corner_count(corners); ++e) {
+    const EdgeOf edge = edge_of(corners, e);
+    add_collapse(context, edge.a, edge.b, found);
+    if (patch.shells_at(edge.a, edge.b).size() != 2) continue;
+    for (const RowEnd first : {RowEnd::low_triangle, RowEnd::high_triangle})
+      for (const RowEnd second : {RowEnd::low_triangle, RowEnd::high_triangle})
+        found.push_back(
+            {Operation::split, [&context, edge, first, second] { return divide_edge(context, edge.a, edge.b, first, second); }});
+  }
+  return found;
+}
+
 std::vector<StripCandidates> strips_for(const RepairContext& context, LocalShell shell, int edge) {
   std::vector<StripCandidates> found;
   const Corners& corners = context.patch.shell(shell).corners;

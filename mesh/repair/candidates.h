@@ -23,6 +23,9 @@ std::vector<Candidate> candidates_for(const RepairContext& context, LocalShell s
 /// The splits of a quad along its diagonals; first the diagonal across which it is bent more. Empty for a triangle.
 std::vector<Candidate> splits_of(const RepairContext& context, LocalShell shell);
 
+/// What one operation by hand can do at a shell: split it, collapse an edge, divide it or divide it anew together with a neighbour.
+std::vector<Candidate> single_operations_at(const RepairContext& context, LocalShell shell);
+
 /// Ways to divide a strip, or to remove it.
 struct StripCandidates {
   Operation operation;

@@ -203,6 +203,22 @@ bool split_failing_quads(const RepairContext& context, RepairState& state) {
   return true;
 }
 
+bool heal_failing_shells(const RepairContext& context, RepairState& state) {
+  const Patch& patch = context.patch;
+  bool better = false;
+  // Each success leaves fewer failing shells, so this ends.
+  for (bool again = true; again;) {
+    again = false;
+    for (const LocalShell shell : bad_shells(patch, state.history, quality::Grade::fail)) {
+      if (!goes_on(state.progress, 1)) return better;
+      if (!patch.shell(shell).is_alive || patch.shell(shell).state.fail == 0) continue;
+      again = improve(context, state, single_operations_at(context, shell), shell, TrialGoal::heal) || again;
+    }
+    better = better || again;
+  }
+  return better;
+}
+
 void tidy_triangles(const RepairContext& context, RepairState& state, double done) {
   const Patch& patch = context.patch;
   for (std::size_t s = 0; s < patch.shell_count(); ++s) {

@@ -25,6 +25,10 @@ bool cure_shells(const RepairContext& context, RepairState& state, quality::Grad
 /// other triangles. Then joins or separates these. For quads that nothing else helps. Returns whether one was split.
 bool split_failing_quads(const RepairContext& context, RepairState& state);
 
+/// Tries on each failing shell what a single operation by hand can do, with no more than its conditions: fewer shells fail, and none newly.
+/// Begins again until nothing helps. For shells that nothing else helps. Returns whether one was healed.
+bool heal_failing_shells(const RepairContext& context, RepairState& state);
+
 /// Joins or separates triangles that the repair made, where nothing gets worse. `done`: share of the round done before.
 void tidy_triangles(const RepairContext& context, RepairState& state, double done);
 

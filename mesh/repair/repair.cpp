@@ -104,22 +104,35 @@ bool run_round(const RepairContext& context, RepairState& state) {
   return better;
 }
 
+/// What is left where rounds don't help: splits of failing quads; then single operations on failing shells. Returns whether one helped.
+bool help_last(const RepairContext& context, RepairState& state) {
+  return split_failing_quads(context, state) || heal_failing_shells(context, state);
+}
+
 /// Rounds until a thorough one makes nothing better and no failing quad has halves that pass, the options' limit, or the
 /// repair is cancelled. Returns how many.
 int run_rounds(const RepairContext& context, RepairState& state) {
   int rounds = 0;
+  std::optional<std::size_t> failing_before;  // at the last thorough round
   relax_neighbourhood(context, state);
   for (int& round = state.progress.round; round < context.options.max_rounds && !state.progress.stopped; ++round) {
     rounds = round + 1;
     const bool better = run_round(context, state);
     const bool is_thorough = state.effort.along_lines;
-    if (!better && is_thorough && !split_failing_quads(context, state)) break;
+    if (is_thorough) {
+      // Rounds may go in a circle: relaxing makes shells warn, and operations help these again. So it counts what fails.
+      const std::size_t failing = bad_shells(context.patch, state.history, quality::Grade::fail).size();
+      const bool is_stuck = !better || (failing_before && failing >= *failing_before);
+      failing_before = failing;
+      if (is_stuck && !help_last(context, state) && !better) break;
+    }
     // A round that made nothing better is followed by a thorough one, which tries every shell again.
     state.effort = better || is_thorough ? kQuickEffort : kThoroughEffort;
     if (!better) state.record.forget_refused();
     // After a split its triangles are joined and moved away first, while the nodes are where they were.
     if (better || !is_thorough) relax_neighbourhood(context, state);
   }
+  heal_failing_shells(context, state);
   return rounds;
 }
 

@@ -19,9 +19,9 @@ constexpr double kMinGain = 0.05;
 constexpr int kPreviewSweeps = 1;
 constexpr double kMinPreviewGain = -2;  ///< candidates that gain less in the preview get no full trial
 
-// Gains with TrialGoal::split: of each shell that passes and that doesn't warn any more, and cost of a triangle above the max at a node.
-// What else the halves are like doesn't count, so that of two equal splits the first is taken.
-constexpr double kPassing = 10, kNotWarning = 1, kCrowded = 1;
+// Gains with TrialGoal::split and heal: of each shell that passes and that doesn't warn any more, and cost of a triangle above the max at
+// a node. A failing shell outweighs all else. What else the halves are like doesn't count, so that of two equal splits the first is taken.
+constexpr double kPassing = 100, kNotWarning = 1, kCrowded = 1;
 
 // Of changes that leave nothing failing or warning the smoother one is preferred: the gain grows by this share for each degree of facets
 // less, by this share at most.
@@ -62,10 +62,13 @@ std::optional<double> preview(const RepairContext& context, const RepairState& s
   return gain;
 }
 
+/// Whether it is tried only where nothing else helps: nodes stay, pairs of triangles may be made, and each candidate is tried.
+bool is_last_resort(TrialGoal goal) { return goal == TrialGoal::split || goal == TrialGoal::heal; }
+
 /// Whether the shells that changed got better in the way that the goal asks for.
 bool reaches(TrialGoal goal, const Cost& before, const Cost& now) {
   if (goal == TrialGoal::tidy) return now.failing <= before.failing && now.warning <= before.warning;
-  if (goal == TrialGoal::split) return now.failing < before.failing;
+  if (is_last_resort(goal)) return now.failing < before.failing;
   const bool cures = now.failing + now.warning < before.failing + before.warning;
   return now.failing < before.failing || now.worst >= before.worst + (cures ? -1e-4F : 1e-3F);
 }
@@ -86,34 +89,35 @@ Outcome try_out(const RepairContext& context, const RepairState& state, const Ca
   const Patch& patch = context.patch;
   const ChangeHistory& history = state.history;
   if (const Refusal refusal = candidate.apply()) return {0, *refusal, 0};
-  if (goal != TrialGoal::split) smooth_nodes(context, state.effort.sweeps, state.along_lines);
+  if (!is_last_resort(goal)) smooth_nodes(context, state.effort.sweeps, state.along_lines);
   judge_shells(context, patch.changed_shells());
   const Cost before = cost_before(patch), now = cost_now(patch);
-  const double gain = goal == TrialGoal::split ? gain_of_split(patch, state, before, now) : before.total - now.total;
+  const double gain = is_last_resort(goal) ? gain_of_split(patch, state, before, now) : before.total - now.total;
   if (gain < kMinGain) return {0, "no operation makes it better", 4};
   if (!reaches(goal, before, now)) return goal == TrialGoal::tidy ? Outcome{} : Outcome{0, "no operation makes it better", 4};
   if (adds_failures(patch)) return {0, "every operation makes a neighbour fail", 2};
+  if (goal == TrialGoal::heal && has_new_failure(patch)) return {0, "every operation makes a neighbour fail", 2};
   if (!conforms(patch)) return {0, "every operation would tear or fold the mesh", 1};
-  const long max_triangles = goal == TrialGoal::split ? history.max_triangles_by_split : history.max_triangles;
+  const long max_triangles = is_last_resort(goal) ? history.max_triangles_by_split : history.max_triangles;
   if (now.triangles > before.triangles && history.triangles + now.triangles - before.triangles > max_triangles)
     return {0, "there would be too many triangles", kTrianglesRank};
-  if (goal != TrialGoal::split && now.triangle_pairs > before.triangle_pairs &&
+  if (!is_last_resort(goal) && now.triangle_pairs > before.triangle_pairs &&
       history.added_triangle_pairs + now.triangle_pairs - before.triangle_pairs > 0)
     return {0, "there would be two triangles side by side", kTrianglesRank};
   // The halves of a warped quad are as near to the surface as the quad: it fills the space between its diagonals.
-  if (goal != TrialGoal::split && !stays_on_surface(context)) return {0, "every operation leaves the surface", 3};
+  if (!is_last_resort(goal) && !stays_on_surface(context)) return {0, "every operation leaves the surface", 3};
   // Where quads were split, the shells before are far from the smooth surface, so that the check above allows much.
-  if (goal != TrialGoal::split && history.added_triangle_pairs > 0 && !keeps_peaks(context))
+  if (!is_last_resort(goal) && history.added_triangle_pairs > 0 && !keeps_peaks(context))
     return {0, "every operation leaves the surface", 3};
   const bool is_valid = now.failing == 0 && now.warning == 0;
-  return {goal == TrialGoal::split || !is_valid ? gain : with_preference(context, gain), {}, 0};
+  return {is_last_resort(goal) || !is_valid ? gain : with_preference(context, gain), {}, 0};
 }
 
 /// Candidates worth a full trial, by descending gain in the preview. Splits, whose nodes stay, are all tried, in their order.
 std::vector<const Candidate*> promising_of(const RepairContext& context, const RepairState& state, const std::vector<Candidate>& candidates,
                                            TrialGoal goal, Outcome& reason) {
   std::vector<const Candidate*> promising;
-  if (goal == TrialGoal::split) {
+  if (is_last_resort(goal)) {
     for (const Candidate& candidate : candidates) promising.push_back(&candidate);
     return promising;
   }
@@ -132,7 +136,7 @@ const Candidate* best_candidate(const RepairContext& context, const RepairState&
   const Candidate* best = nullptr;
   double max_gain = 0;
   for (std::size_t i = 0; i < promising.size(); ++i) {
-    if (i >= (best != nullptr ? state.effort.max_trials_once_found : state.effort.max_trials)) break;
+    if (!is_last_resort(goal) && i >= (best != nullptr ? state.effort.max_trials_once_found : state.effort.max_trials)) break;
     context.patch.begin();
     const Outcome outcome = try_out(context, state, *promising[i], goal);
     context.patch.take_back();
@@ -152,7 +156,7 @@ bool improve(const RepairContext& context, RepairState& state, const std::vector
   const std::vector<const Candidate*> promising = promising_of(context, state, candidates, goal, reason);
   const Candidate* best = best_candidate(context, state, promising, goal, reason);
   if (best == nullptr) {
-    if (goal == TrialGoal::cure || (goal == TrialGoal::split && reason.rank == kTrianglesRank)) state.record.reason[shell] = reason.why;
+    if (goal == TrialGoal::cure || (is_last_resort(goal) && reason.rank == kTrianglesRank)) state.record.reason[shell] = reason.why;
     return false;
   }
   context.patch.begin();

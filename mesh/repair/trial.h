@@ -12,6 +12,7 @@ namespace prismesh::mesh::repair {
 enum class TrialGoal : std::uint8_t {
   cure,   ///< a shell that fails or warns
   split,  ///< a quad that fails and that nothing else helps: in two, whose nodes stay and which may be adjacent to other triangles
+  heal,   ///< a shell that fails and that nothing else helps: by any single operation as by hand, with no more than its conditions
   tidy,   ///< triangles, where nothing fails or warns more than before
 };
 
