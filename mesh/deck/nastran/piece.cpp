@@ -34,11 +34,7 @@ void read_unlisted_points(const Card& card, std::vector<IdRange>& points) {
 void read_panel(const Card& card, std::vector<AeroPanel>& panels) {
   const std::string_view name = card.name();
   AeroPanel panel{card.integer_or_zero(0), card.integer_or_zero(3), 1, 0, 0};
-  if (name == "CAERO1" || name == "CAERO7" || name == "BODY7") {
-    panel.chords = card.integer_or_zero(4);
-    panel.span_list = card.integer_or_zero(5);
-    panel.chord_list = card.integer_or_zero(6);
-  } else if (name == "CAERO2") {
+  if (name == "CAERO1" || name == "CAERO2" || name == "CAERO7" || name == "BODY7") {
     panel.chords = card.integer_or_zero(4);
     panel.span_list = card.integer_or_zero(5);
     panel.chord_list = card.integer_or_zero(6);
