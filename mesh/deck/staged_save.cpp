@@ -105,16 +105,22 @@ bool stays_behind(const fs::path& relative) {
   return relative.is_absolute() || relative.begin() == relative.end() || *relative.begin() == "..";
 }
 
-/// Copies of the companions. One with an absolute name is found from everywhere.
+/// Copies of the companions. One with an absolute name is found from everywhere; one that another card includes is copied as a file of the
+/// deck.
 Result<std::vector<FilePlan>> plan_companions(const Deck& deck, const fs::path& target) {
   std::vector<FilePlan> plans;
   for (std::size_t c = 0; c < deck.companions.size(); ++c) {
     const CompanionFile& companion = deck.companions[c];
-    if (companion.relative.is_absolute()) continue;
+    const bool is_of_deck =
+        std::any_of(deck.files.begin(), deck.files.end(), [&](const SourceFile& file) { return same_file(file.path, companion.path); });
+    if (companion.relative.is_absolute() || is_of_deck) continue;
     if (stays_behind(companion.relative))
       return fail(companion.path.string(),
                   "is a file that the deck names outside the main file's folder, so the deck can't be saved into another folder");
     const fs::path to = target.parent_path() / companion.relative;
+    if (same_file(to, target))
+      return fail(target.string(), "is the name of a file that the deck names itself (" + companion.relative.generic_string() +
+                                       "); choose another name for the main file");
     if (!same_file(companion.path, to)) plans.push_back({deck.files.size() + c, to});
   }
   return plans;

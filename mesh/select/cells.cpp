@@ -12,7 +12,6 @@ namespace {
 
 constexpr double kMinShape = 0.3;  ///< sine of the smallest angle of two triangles that count as a quad
 constexpr double kEqual = 1e-9;
-constexpr double kDegrees = 57.29577951308232;
 constexpr std::uint32_t kNotAsked = 0xffffffffu, kNone = 0xfffffffeu;  ///< of Cells::partner_
 
 Vec3 centre_of(const Model& model, const Cell& cell) {
@@ -127,7 +126,7 @@ Sides sides_at(const Model& model, Edge edge, const Vec3& from, const Vec3& into
 
 Walk::Crossing Cells::crossing(Edge edge, const Vec3& from, const Vec3& into, const Vec3& normal) const {
   const Sides sides = sides_at(model_, edge, from, into);
-  double degrees = deterministic_atan2(sides.from.cross(sides.into).norm(), -sides.from.dot(sides.into)) * kDegrees;
+  double degrees = deterministic_atan2(sides.from.cross(sides.into).norm(), -sides.from.dot(sides.into)) * kDegreesPerRadian;
   if (sides.into.dot(normal) < 0) degrees = -degrees;
   const double width = 2 * std::min(sides.from.norm(), sides.into.norm());
   return {degrees, width > 0 ? degrees / width : 0};

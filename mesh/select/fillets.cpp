@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <optional>
 
+#include "base/deterministic_math.h"
 #include "mesh/select/cells.h"
 
 namespace prismesh::mesh::select {
@@ -18,8 +19,6 @@ constexpr int kMaxColumns = 64;        ///< over which a fillet goes on beside s
 constexpr int kMaxCrooked = 3;         ///< of these, columns whose own rows don't bend like a fillet: a bead ends in it
 constexpr double kCrooked = 1.0 / 15;  ///< of the angle
 constexpr double kMaxWidths = 10;      ///< rows of a fillet whose widths differ by a greater factor aren't looked for
-
-constexpr double kDegreesOfRadian = 57.29577951308232;
 
 /// What the rows around a cell are. Crooked: one of the cell's edges bends. Bent: they bend like a fillet, but beside them nothing is flat.
 enum class Rows : std::uint8_t { nothing, crooked, bent, fillet };
@@ -108,7 +107,7 @@ int Fillets::rows_across(const Cell& cell, std::size_t first) {
   if ((known >> shift & 8) == 0) {
     // Most of a sheet is flat: its nearest edges tell.
     const double least = angle_degrees_ / static_cast<double>(kMaxRows + 1) * kMinOfPeak / kMaxWidths;
-    const double radians = least / kDegreesOfRadian;
+    const double radians = least / kDegreesPerRadian;
     if (cells_->is_flat_at(kept, position, radians) && cells_->is_flat_at(kept, position + 2, radians)) {
       known = static_cast<std::uint8_t>(known | 8 << shift);
       return 0;

@@ -15,7 +15,7 @@ namespace prismesh::kiosk::tools::parts {
 namespace {
 
 /// For text of ordinary size: WCAG 2.1, success criterion 1.4.3.
-constexpr double kLeastContrast = 4.5;
+constexpr double kMinContrast = 4.5;
 
 double channel(unsigned colour, int shift) { return (colour >> shift & 0xffU) / 255.0; }
 
@@ -39,7 +39,7 @@ TEST(Contrast, every_colour_with_a_meaning_can_be_read_on_a_panel) {
   EXPECT_EQ(panels::kPanelColour >> 24, 0xffU) << "the model doesn't show through";
   for (const unsigned colour :
        {panels::kInk, panels::kFaintInk, panels::kWarnColour, panels::kFailColour, panels::kInformationColour, panels::kActiveColour})
-    EXPECT_GE(contrast_on_panel(colour), kLeastContrast) << fmt::format("{:08x}", colour);
+    EXPECT_GE(contrast_on_panel(colour), kMinContrast) << fmt::format("{:08x}", colour);
 }
 
 struct FaintestWord {
@@ -82,7 +82,7 @@ TEST_F(ContrastOfPanels, every_word_of_the_parts_can_be_read) {
   }
   const FaintestWord faintest = faintest_word();
   EXPECT_GT(faintest.glyphs, 40U) << "names, counts and the words only, hide and show";
-  EXPECT_GE(faintest.contrast, kLeastContrast);
+  EXPECT_GE(faintest.contrast, kMinContrast);
 }
 
 }  // namespace

@@ -123,6 +123,39 @@ TEST(Companions, the_engine_input_goes_with_the_starters) {
   EXPECT_EQ(content(folder / "to/a_0002.rad"), "/RUN/a/2\n 2.0\n");
 }
 
+TEST(Companions, the_main_file_cant_take_the_name_of_one) {
+  const DeckFolder folder;
+  folder.write("from/a_0001.rad", "/RUN/a/1\n 1.0\n");
+  const auto opened = deck::open(folder.write("from/a_0000.rad", std::string(kRadiossHead) + "/END\n"));
+  ASSERT_OPENED(opened);
+  const auto saved = save(*opened->deck, opened->model, opened->model, folder / "to/a_0001.rad");
+  ASSERT_FALSE(saved);
+  EXPECT_THAT(saved.error().text(), HasSubstr("is the name of a file that the deck names itself (a_0001.rad)"));
+}
+
+TEST(Companions, that_are_includes_as_well_are_copied_once) {
+  const DeckFolder folder;
+  folder.write("from/more.inp", "*NODE\n2, 1., 0., 0.\n");
+  const auto opened =
+      deck::open(folder.write("from/a.inp", std::string(kAbaqusHead) + "*IMPERFECTION, FILE=more.inp\n*INCLUDE, INPUT=more.inp\n"));
+  ASSERT_OPENED(opened);
+  const auto saved = save(*opened->deck, opened->model, opened->model, folder / "to/a.inp");
+  ASSERT_TRUE(saved) << saved.error().text();
+  EXPECT_EQ(saved->files_written.size(), 2u);
+}
+
+TEST(Companions, that_went_after_the_deck_was_opened_are_named_and_nothing_is_written) {
+  const DeckFolder folder;
+  folder.write("from/m.csv", "1,2");
+  const auto opened = deck::open(folder.write("from/a.k", std::string(kDynaNode) + "*DEFINE_TABLE_MATRIX\n         7m.csv\n*END\n"));
+  ASSERT_OPENED(opened);
+  std::filesystem::remove(folder / "from/m.csv");
+  const auto saved = save(*opened->deck, opened->model, opened->model, folder / "to/a.k");
+  ASSERT_FALSE(saved);
+  EXPECT_THAT(saved.error().text(), HasSubstr("m.csv"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "to"));
+}
+
 TEST(Companions, a_line_that_may_be_a_name_is_one_only_if_the_file_is_there) {
   const DeckFolder folder;
   const auto opened = folder.open(std::string(kDynaNode) + "*DEFINE_CURVE_TRIM\n         1         1\n       1.0       2.0\n*END\n");
