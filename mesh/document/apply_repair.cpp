@@ -1,16 +1,18 @@
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <iterator>
+#include <memory>
+#include <tuple>
 
 #include "base/counted.h"
-#include "mesh/deck/editing/edit_checks.h"
 #include "mesh/document/apply.h"
 #include "mesh/document/clusters.h"
 #include "mesh/document/restructure.h"
 #include "mesh/document/scope.h"
 #include "mesh/document/unwritable.h"
-#include "mesh/model/topology_change.h"
-#include "mesh/repair/manual_operation.h"
+#include "mesh/model/adjacency.h"
+#include "mesh/repair/compose.h"
 #include "mesh/repair/repair.h"
 
 namespace prismesh::mesh::document {
@@ -32,6 +34,15 @@ std::string shell_name(const Model& model, ShellIndex shell) { return "shell:" +
 
 std::string crowded(std::size_t nodes) { return counted(nodes, "node") + " with too many triangles"; }
 
+/// What a repair has reached, over its passes.
+struct Reached {
+  repair::Repaired repaired;  ///< its change is one of the document's current generation; indices are those that it gives
+  Frozen frozen;              ///< of the last pass: shells that had to stay as they are, since the deck can't be written otherwise
+  Frozen ever_frozen;         ///< of all passes
+  std::shared_ptr<const Generation> generation;  ///< null: nothing has changed
+  EditReport figures;                            ///< of applying the change
+};
+
 void note_operations(const repair::Repaired& repaired, EditReport& report) {
   std::string said;
   constexpr std::array<std::string_view, repair::kOperationCount> kDone{"split", "collapsed", "merged", "swapped", "moved"};
@@ -44,10 +55,10 @@ void note_operations(const repair::Repaired& repaired, EditReport& report) {
 }
 
 void note_triangle_pairs(const repair::Repaired& repaired, EditReport& report) {
-  report.triangle_pairs = repaired.triangle_pairs;
-  if (repaired.triangle_pairs > 0)
-    report.notes.push_back(counted(repaired.triangle_pairs, "pair") + " of adjacent triangles " +
-                           (repaired.triangle_pairs == 1 ? "stays" : "stay") + ": without them elements would fail");
+  const std::size_t pairs = report.triangle_pairs = repaired.triangle_pairs.size();
+  if (pairs > 0)
+    report.notes.push_back(counted(pairs, "pair") + " of adjacent triangles " + (pairs == 1 ? "stays" : "stay") +
+                           ": without them elements would fail");
 }
 
 void note_unrepaired(const repair::Repaired& repaired, const Frozen& frozen, const Model& model, EditReport& report) {
@@ -89,160 +100,230 @@ Doing further(int attempt, const Doing& doing) {
   return [attempt, &doing] { return "attempt " + std::to_string(attempt) + ", " + doing(); };
 }
 
-/// What a repair works on and fills in.
-struct RepairTask {
-  const Document& document;
-  const Repair& edit;
-  repair::Options options;
-  Generation& next;
-  EditReport& report;
-  NodeSet clusters;  ///< to repair
-  Frozen frozen;     ///< shells that must stay as they are, since the deck can't be written otherwise
-};
-
 /// The error of a repair that was stopped while the deck couldn't hold what it had reached.
 Error stopped_too_early(Error why) {
   why.message = "the repair was stopped, and nothing of it is kept: the deck can't hold what it had reached: " + why.message;
   return why;
 }
 
+/// The progress of a repair over its passes and attempts.
+class RepairProgress {
+ public:
+  RepairProgress(const Progress& progress, bool keeps) : progress_(progress), keeps_(keeps) {}
+
+  int attempt = 0;  ///< from 1, over all passes
+  int pass = 0;
+
+  bool is_told_to_stop() const { return is_told_to_stop_; }
+  /// Whether a stop keeps what was reached.
+  bool keeps() const { return keeps_ || progress_.keeps(); }
+  /// Of an attempt. It doesn't go back when another attempt begins; each pass counts as most of what is left.
+  bool report(double fraction, const Doing& doing) {
+    furthest_ = std::max(furthest_, 1 - std::pow(1 - kShareOfPass, pass) * (1 - kShareOfPass * fraction));
+    if (progress_ && !progress_(furthest_, further(attempt, doing))) is_told_to_stop_ = true;
+    return !is_told_to_stop_;
+  }
+
+ private:
+  static constexpr double kShareOfPass = 0.7;
+  const Progress& progress_;
+  bool keeps_;
+  bool is_told_to_stop_ = false;
+  double furthest_ = 0;
+};
+
+/// What a pass works on.
+struct PassInput {
+  const Document& document;  ///< whose current generation it repairs
+  const Repair& edit;
+  const repair::Options& options;
+  const ShellSet& scope;
+  const NodeSet& clusters;
+};
+
+/// What a pass made of the generation that it began with.
+struct Pass {
+  repair::Repaired repaired;
+  Frozen frozen;
+  std::shared_ptr<const Generation> generation;  ///< null: nothing has changed
+  EditReport figures;
+};
+
 /// Repairs the scope, and repeats without the changes that can't be written. Errors: cancelled; no set of changes can be written; stopped
 /// before one was found.
-Result<repair::Repaired> repair_writable(RepairTask& task, const ShellSet& scope, const Progress& progress) {
-  auto& [document, edit, options, next, report, clusters, frozen] = task;
+Result<Pass> repair_writable(const PassInput& input, RepairProgress& progress) {
+  const Document& document = input.document;
   const Generation& current = document.current();
-  const relax::ReferenceSurface surface = surface_about(current, scope, options.relax.feature_angle);
-  const repair::Rules rules = with_frozen(rules_for(document, current), frozen);
-  int attempt = 1;
-  bool is_told_to_stop = false;
-  double furthest = 0;  // the progress doesn't go back when another attempt begins
-  const Progress forward = [&](double fraction, const Doing& doing) {
-    furthest = std::max(furthest, fraction);
-    if (progress && !progress(furthest, further(attempt, doing))) is_told_to_stop = true;
-    return !is_told_to_stop;
-  };
-  const auto keeps = [&] { return task.edit.on_cancel == OnCancel::keep || progress.keeps(); };
-  for (;; ++attempt) {
+  Pass pass;
+  repair::Options options = input.options;
+  const relax::ReferenceSurface surface = surface_about(current, input.scope, options.relax.feature_angle);
+  const repair::Rules rules = with_frozen(rules_for(document, current), pass.frozen);
+  const Progress forward = [&](double fraction, const Doing& doing) { return progress.report(fraction, doing); };
+  for (int tries = 1;; ++tries) {
+    ++progress.attempt;
     options.stop_at.clear();
-    if (edit.stop_at && edit.stop_at->attempt == attempt) options.stop_at = edit.stop_at->steps;
+    if (input.edit.stop_at && input.edit.stop_at->attempt == progress.attempt) options.stop_at = input.edit.stop_at->steps;
     Result<repair::Repaired> repaired =
-        repair::repair({current.model, surface, rules, judged_by(document), options, clusters}, scope, forward);
-    if (!repaired) return repaired;
-    if (is_told_to_stop && !keeps()) return fail(cancelled());
-    if (repaired->stopped) note_stop(attempt, options.max_rounds, *repaired, report);
-    if (repaired->change.empty()) return repaired;
+        repair::repair({current.model, surface, rules, judged_by(document), options, input.clusters}, input.scope, forward);
+    if (!repaired) return fail(repaired.error());
+    if (progress.is_told_to_stop() && !progress.keeps()) return fail(cancelled());
+    pass.repaired = std::move(*repaired);
+    if (pass.repaired.change.empty()) return pass;
     Generation trial = current;
-    const Result<void> done = restructure(document, repaired->change, trial, report);
+    pass.figures = {};
+    const Result<void> done = restructure(document, pass.repaired.change, trial, pass.figures);
     if (done) {
-      next = std::move(trial);
-      return repaired;
+      pass.generation = std::make_shared<const Generation>(std::move(trial));
+      return pass;
     }
-    if (repaired->stopped) return fail(stopped_too_early(done.error()));
-    if (attempt == kMaxAttempts) return fail(done.error());
-    const Result<std::size_t> found = find_unwritable(document, current.model, repaired->change, frozen, forward);
-    if (!found) return fail(keeps() ? stopped_too_early(done.error()) : found.error());
+    if (pass.repaired.stopped) return fail(stopped_too_early(done.error()));
+    if (tries == kMaxAttempts) return fail(done.error());
+    const Result<std::size_t> found = find_unwritable(document, current.model, pass.repaired.change, pass.frozen, forward);
+    if (!found) return fail(progress.keeps() ? stopped_too_early(done.error()) : found.error());
     if (*found == 0) return fail(done.error());
+  }
+}
+
+/// The document with a further generation as its current one.
+Document with_current(const Document& document, std::shared_ptr<const Generation> generation) {
+  Document further = document;
+  further.generations.resize(document.cursor + 1);
+  further.generations.push_back(std::move(generation));
+  further.cursor = further.generations.size() - 1;
+  return further;
+}
+
+/// Keeps those pairs that are still edges between two triangles.
+void keep_pairs_of(const Model& model, std::vector<repair::NodePair>& pairs) {
+  std::erase_if(pairs, [&](const repair::NodePair& pair) {
+    if (!pair.first.valid() || !pair.second.valid()) return true;
+    const EdgeIndex edge = model.adjacency->find_edge(pair.first, pair.second);
+    if (!edge.valid()) return true;
+    const auto shells = model.adjacency->shells_of(edge);
+    return shells.size() != 2 || !model.shell(shells[0]).is_triangle() || !model.shell(shells[1]).is_triangle();
+  });
+}
+
+/// Adds a pass to what was reached before, as one change. Errors: the deck can't hold that.
+Result<void> add_pass(const Document& document, Pass pass, Reached& reached) {
+  const Model& model = document.current().model;
+  repair::Repaired& all = reached.repaired;
+  if (reached.generation == nullptr) {
+    const std::size_t bad_before = all.bad_before, clusters_before = all.clusters_before;
+    all = std::move(pass.repaired);
+    std::tie(all.bad_before, all.clusters_before) = std::tie(bad_before, clusters_before);
+    reached.generation = std::move(pass.generation);
+    reached.figures = std::move(pass.figures);
+    reached.frozen = std::move(pass.frozen);
+    return {};
+  }
+  repair::Composition both = repair::compose(model, all.change, pass.repaired.change);
+  Generation next = document.current();
+  EditReport figures;
+  if (const Result<void> done = restructure(document, both.change, next, figures); !done) return done;
+  const auto node_index = [&](NodeIndex& node) {
+    if (node.valid() && node.value >= model.node_count()) node = both.new_node_index[node.value - model.node_count()];
+  };
+  const auto shell_index = [&](ShellIndex shell) {
+    return shell.value < model.shell_count() ? shell : both.new_shell_index[shell.value - model.shell_count()];
+  };
+  repair::Repaired& more = pass.repaired;
+  all.triangle_pairs.insert(all.triangle_pairs.end(), more.triangle_pairs.begin(), more.triangle_pairs.end());
+  for (auto& [a, b] : all.triangle_pairs) {
+    node_index(a);
+    node_index(b);
+  }
+  keep_pairs_of(next.model, all.triangle_pairs);
+  all.unrepaired = std::move(more.unrepaired);
+  for (repair::Unrepaired& left : all.unrepaired) left.shell = shell_index(left.shell);
+  all.clusters_left = std::move(more.clusters_left);
+  for (repair::ClusterLeft& left : all.clusters_left) node_index(left.node);
+  for (std::size_t i = 0; i < all.done.size(); ++i) all.done[i] += more.done[i];
+  all.relaxed = both.change.moved.size();
+  all.bad_left = more.bad_left;
+  all.rounds = more.rounds;
+  all.stopped = std::move(more.stopped);
+  all.change = std::move(both.change);
+  reached.frozen = {};
+  for (auto& [shell, held] : pass.frozen.shells) reached.frozen.shells[shell_index(shell)] = std::move(held);
+  reached.generation = std::make_shared<const Generation>(std::move(next));
+  reached.figures = std::move(figures);
+  return {};
+}
+
+/// Adds what a pass says that changed nothing: why the rest stays.
+void add_reasons(Pass pass, Reached& reached) {
+  repair::Repaired& all = reached.repaired;
+  all.unrepaired = std::move(pass.repaired.unrepaired);
+  all.clusters_left = std::move(pass.repaired.clusters_left);
+  all.bad_left = pass.repaired.bad_left;
+  all.rounds = pass.repaired.rounds;
+  all.stopped = std::move(pass.repaired.stopped);
+  reached.frozen = std::move(pass.frozen);
+}
+
+/// Repairs in passes, until one changes nothing: so that the repair of what a repair has left does nothing.
+/// Errors: as repair_writable, of the first pass; cancelled.
+Result<Reached> repair_in_passes(const Document& document, const Repair& edit, RepairProgress& progress) {
+  repair::Options options = options_of(edit.angle, edit.max_move);
+  options.moves_from = &document.current().model;
+  Reached reached;
+  Document at = document;
+  for (;; ++progress.pass) {
+    const Result<ShellSet> scope = shells_in(at, edit.scope, "repair");
+    if (!scope) return fail(scope.error());
+    const ClustersInScope clusters = clusters_in(at, edit.scope, *scope);
+    const bool is_done = clusters.nodes.empty() && std::all_of(scope->begin(), scope->end(), [&](ShellIndex shell) {
+                           return at.current().quality[shell.value].grade() == quality::Grade::ok;
+                         });
+    if (is_done) return reached;
+    ShellSet shells;
+    std::set_union(scope->begin(), scope->end(), clusters.shells.begin(), clusters.shells.end(), std::back_inserter(shells));
+    Result<Pass> pass = repair_writable({at, edit, options, shells, clusters.nodes}, progress);
+    if (!pass && (progress.pass == 0 || is_cancelled(pass.error()))) return fail(pass.error());
+    if (!pass) return reached;
+    for (const auto& [shell, held] : pass->frozen.shells)
+      if (shell.value < document.current().model.shell_count()) reached.ever_frozen.shells.insert({shell, held});
+    if (progress.pass == 0) {
+      reached.repaired.bad_before = pass->repaired.bad_before;
+      reached.repaired.clusters_before = pass->repaired.clusters_before;
+    }
+    const bool is_last = pass->repaired.change.empty() || pass->repaired.stopped;
+    if (pass->repaired.change.empty())
+      add_reasons(std::move(*pass), reached);
+    else if (!add_pass(document, std::move(*pass), reached))
+      return reached;
+    if (is_last) return reached;
+    at = with_current(document, reached.generation);
   }
 }
 
 }  // namespace
 
 Result<void> apply_edit(const Document& document, const Repair& edit, Generation& next, EditReport& report, const Progress& progress) {
-  const Result<ShellSet> scope = shells_in(document, edit.scope, "repair");
-  if (!scope) return fail(scope.error());
-  const ClustersInScope clusters = clusters_in(document, edit.scope, *scope);
-  if (clusters.nodes.empty() && std::all_of(scope->begin(), scope->end(),
-                                            [&](ShellIndex shell) { return next.quality[shell.value].grade() == quality::Grade::ok; })) {
+  RepairProgress repair_progress(progress, edit.on_cancel == OnCancel::keep);
+  Result<Reached> reached = repair_in_passes(document, edit, repair_progress);
+  if (!reached) return fail(reached.error());
+  if (repair_progress.attempt == 0) {
     report.notes.push_back(edit.scope == Scope::damaged ? "nothing to repair: no edit made an element fail or warn"
                                                         : "nothing to repair: every element in the scope is fine");
     return {};
   }
-  RepairTask task{document, edit, options_of(edit.angle, edit.max_move), next, report, clusters.nodes, {}};
-  ShellSet shells;
-  std::set_union(scope->begin(), scope->end(), clusters.shells.begin(), clusters.shells.end(), std::back_inserter(shells));
-  const Result<repair::Repaired> repaired = repair_writable(task, shells, progress);
-  if (!repaired) return fail(repaired.error());
-  const Frozen& frozen = task.frozen;
-  note_operations(*repaired, report);
-  note_triangle_pairs(*repaired, report);
-  note_unrepaired(*repaired, frozen, next.model, report);
-  note_clusters_left(*repaired, next.model, report);
-  for (std::string& note : notes_of(frozen)) report.notes.push_back(std::move(note));
-  return {};
-}
-
-namespace {
-
-/// The shells and nodes that an operation by hand acts on.
-struct HandTargets {
-  ShellSet shells;
-  NodeSet nodes;
-};
-
-/// The shell with an id. `word`: shell, quad or tri. Errors: none, or two, has it.
-Result<ShellIndex> find_shell_by_hand(const Model& model, const std::string& word, std::int64_t id) {
-  std::vector<ShellIndex> found{model.find_shell(id)};
-  if (model.second_shells)
-    for (const ShellIndex shell : *model.second_shells)
-      if (model.shell_ids[shell.value] == id) found.push_back(shell);
-  std::erase_if(
-      found, [&](ShellIndex shell) { return !shell.valid() || (word != "shell" && model.shell(shell).is_triangle() != (word == "tri")); });
-  const std::string number = std::to_string(id);
-  if (found.empty()) return fail("", "there is no " + word + " " + number);
-  if (found.size() > 1)
-    return fail("", word + " " + number + " is two shells; \"quad:" + number + "\" and \"tri:" + number + "\" name one of them");
-  return found.front();
-}
-
-Result<HandTargets> find_hand_targets(const Model& model, const Restructure& edit) {
-  const std::string what(repair::name(edit.operation));
-  HandTargets targets;
-  for (const std::string& at : edit.at) {
-    const std::size_t colon = at.find(':');
-    const std::string kind = at.substr(0, colon), digits = colon == std::string::npos ? "" : at.substr(colon + 1);
-    const bool is_id = !digits.empty() && digits.size() <= 18 && digits.find_first_not_of("0123456789") == std::string::npos;
-    const bool is_shell = kind == "shell" || kind == "quad" || kind == "tri";
-    if (!is_id || (!is_shell && kind != "node")) return fail("", what + ": \"" + at + "\" is neither \"shell:ID\" nor \"node:ID\"");
-    const std::int64_t id = std::stoll(digits);
-    Result<ShellIndex> shell = ShellIndex();
-    if (is_shell && !(shell = find_shell_by_hand(model, kind, id))) return fail("", what + ": " + shell.error().message);
-    const NodeIndex node = kind == "node" ? model.find_node(id) : NodeIndex();
-    if (!is_shell && !node.valid()) return fail("", what + ": there is no " + kind + " " + digits);
-    if (is_shell) targets.shells.push_back(*shell);
-    if (node.valid()) targets.nodes.push_back(node);
+  const repair::Repaired& repaired = reached->repaired;
+  if (repaired.stopped) note_stop(repair_progress.attempt, repair::Options().max_rounds, repaired, report);
+  if (reached->generation != nullptr) {
+    next = *reached->generation;
+    report.nodes_moved = reached->figures.nodes_moved;
+    report.elements_added = reached->figures.elements_added;
+    report.elements_removed = reached->figures.elements_removed;
+    report.notes.insert(report.notes.end(), reached->figures.notes.begin(), reached->figures.notes.end());
   }
-  if (targets.shells.empty() && targets.nodes.empty()) return fail("", what + ": \"at\" names no shell and no node");
-  return targets;
-}
-
-/// Refuses to divide a shell that a card forbids to divide; the rules refuse it too, but name no card.
-Result<void> refuse_indivisible(const Document& document, const Model& model, const ShellSet& shells) {
-  if (!document.deck->references) return {};
-  deck::DivisionCheck division(*document.deck);
-  for (const ShellIndex shell : shells)
-    if (Result<void> may = division.may_be_divided(model.shell_ids[deck_ancestor(model, shell).value]); !may) return may;
+  note_operations(repaired, report);
+  note_triangle_pairs(repaired, report);
+  note_unrepaired(repaired, reached->frozen, next.model, report);
+  note_clusters_left(repaired, next.model, report);
+  for (std::string& note : notes_of(reached->ever_frozen)) report.notes.push_back(std::move(note));
   return {};
-}
-
-}  // namespace
-
-Result<void> apply_edit(const Document& document, const Restructure& edit, Generation& next, EditReport& report) {
-  const Generation& current = document.current();
-  const Result<HandTargets> targets = find_hand_targets(current.model, edit);
-  if (!targets) return fail(targets.error());
-  if (edit.operation == repair::Operation::split)
-    if (const Result<void> may = refuse_indivisible(document, current.model, targets->shells); !may) return may;
-  const repair::Options options = options_of(30, {});
-  NodeSet nodes = targets->nodes;
-  std::sort(nodes.begin(), nodes.end());
-  ShellSet about = shells_touching(current.model, nodes);
-  about.insert(about.end(), targets->shells.begin(), targets->shells.end());
-  const relax::ReferenceSurface surface = surface_about(current, about, options.relax.feature_angle);
-  const Result<repair::Restructuring> change =
-      repair::apply_manual_operation({current.model, surface, rules_for(document, current), judged_by(document), options},
-                                     {edit.operation, targets->shells, targets->nodes});
-  if (!change) return fail("", std::string(repair::name(edit.operation)) + ": " + change.error().message);
-  return restructure(document, *change, next, report);
 }
 
 }  // namespace prismesh::mesh::document

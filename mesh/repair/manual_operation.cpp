@@ -217,7 +217,7 @@ Result<Restructuring> apply_manual_operation(const RepairInput& input, const Man
   const Result<void> done = carry_out({context, input.model, manual.shells, manual.nodes}, manual.operation);
   if (!done) return fail(done.error());
   patch.keep();
-  return patch.result();
+  return patch.result().change;
 }
 
 }  // namespace prismesh::mesh::repair

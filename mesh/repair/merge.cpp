@@ -43,7 +43,6 @@ void add_change(Restructuring& all, const Restructuring& piece, const NewIndices
 void add_counts(Repaired& all, const Repaired& piece) {
   for (std::size_t i = 0; i < all.done.size(); ++i) all.done[i] += piece.done[i];
   all.relaxed += piece.relaxed;
-  all.triangle_pairs += piece.triangle_pairs;
   all.rounds = std::max(all.rounds, piece.rounds);
   all.bad_left += piece.bad_left;
 }
@@ -77,6 +76,7 @@ Repaired merge(const Model& model, std::span<const Repaired> pieces) {
     add_change(all.change, piece.change, index_of);
     add_counts(all, piece);
     append(all.clusters_left, piece.clusters_left);
+    for (const auto& [a, b] : piece.triangle_pairs) all.triangle_pairs.emplace_back(index_of(a), index_of(b));
     for (const Unrepaired& left : piece.unrepaired) all.unrepaired.push_back({index_of(left.shell), left.why});
   }
   sort(all);

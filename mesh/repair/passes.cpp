@@ -12,6 +12,7 @@
 #include "mesh/repair/candidates.h"
 #include "mesh/repair/change_history.h"
 #include "mesh/repair/clusters.h"
+#include "mesh/repair/placement.h"
 #include "mesh/repair/strips.h"
 #include "mesh/repair/trial.h"
 
@@ -129,13 +130,11 @@ NodeSet movable_nodes(const Patch& patch, const ChangeHistory& history) {
   return nodes;
 }
 
-/// Where each node of the patch was in the model: max moves count from there. A new node has no such place.
-std::vector<Vec3> positions_in_model(const Patch& patch) {
+/// Where the max move of each node of the patch counts from. A new node has no such place.
+std::vector<Vec3> move_origins(const RepairContext& context) {
   std::vector<Vec3> positions;
-  for (std::size_t n = 0; n < patch.node_count(); ++n) {
-    const NodeIndex node = patch.node(LocalNode(n)).model;
-    positions.push_back(node.valid() ? patch.model().position(node) : Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));
-  }
+  for (std::size_t n = 0; n < context.patch.node_count(); ++n)
+    positions.push_back(move_origin(context, LocalNode(n)).value_or(Vec3::Constant(std::numeric_limits<double>::quiet_NaN())));
   return positions;
 }
 
@@ -239,7 +238,7 @@ void relax_neighbourhood(const RepairContext& context, RepairState& state) {
   Patch& patch = context.patch;
   std::vector<LocalShell> shells;
   const Model small = patch.as_model(shells);
-  const std::vector<Vec3> at_first = positions_in_model(patch);
+  const std::vector<Vec3> at_first = move_origins(context);
   relax::Options options = context.options.relax;
   options.checks_before_rest = false;
   options.move_origins = &at_first;

@@ -59,6 +59,13 @@ struct PatchShell {
   quality::ShellState state;
 };
 
+/// The kept changes of a patch, as changes of its model.
+struct PatchResult {
+  Restructuring change;
+  std::vector<ShellIndex> shell_index;  ///< that each live shell gets, by local shell
+  std::vector<NodeIndex> node_index;    ///< the same for nodes
+};
+
 class Patch {
  public:
   /// Takes the shells of `scope` and `rings` rings about them. `feature_angle` in degrees. `model` and `rules` must outlive it.
@@ -107,8 +114,8 @@ class Patch {
   const Vec3& old_position(LocalNode node) const;
   bool is_new_since_begin(LocalShell shell) const { return shell.value >= shells_at_begin_; }
 
-  /// All kept changes, as changes of the model. `index_of`: if given, receives the index that each live shell gets, by local shell.
-  Restructuring result(std::vector<ShellIndex>* index_of = nullptr) const;
+  /// All kept changes, as changes of the model.
+  PatchResult result() const;
   /// The patch as a small model with adjacency: its node i is the patch's node i, its shells the live ones in order (`shells_of_model`).
   Model as_model(std::vector<LocalShell>& shells_of_model) const;
 

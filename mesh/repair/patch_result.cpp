@@ -1,8 +1,8 @@
 // The result of a patch: as changes of its model, and as a small model.
-#include <algorithm>
 #include <map>
 
 #include "mesh/model/adjacency.h"
+#include "mesh/repair/heaviest.h"
 #include "mesh/repair/patch.h"
 
 namespace prismesh::mesh::repair {
@@ -25,15 +25,11 @@ void gather_origin(const Patch& patch, LocalNode node, double weight, std::map<L
 NodeOrigin origin_in_model(const Patch& patch, LocalNode node, const std::vector<NodeIndex>& index_of) {
   std::map<LocalNode, double> weights;
   gather_origin(patch, node, 1, weights);
-  std::vector<std::pair<LocalNode, double>> heaviest(weights.begin(), weights.end());
-  std::stable_sort(heaviest.begin(), heaviest.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
-  if (heaviest.size() > 4) heaviest.resize(4);
-  double sum = 0;
-  for (const auto& [parent, weight] : heaviest) sum += weight;
   NodeOrigin origin;
-  for (std::size_t i = 0; i < heaviest.size(); ++i) {
-    origin.parent[i] = index_of[heaviest[i].first.value];
-    origin.weight[i] = heaviest[i].second / sum;
+  std::size_t p = 0;
+  for (const auto& [parent, share] : heaviest_four(weights)) {
+    origin.parent[p] = index_of[parent.value];
+    origin.weight[p++] = share;
   }
   return origin;
 }
@@ -46,10 +42,11 @@ ShellNodes nodes_in_model(const Corners& corners, const std::vector<NodeIndex>& 
 
 }  // namespace
 
-Restructuring Patch::result(std::vector<ShellIndex>* index_of_shell) const {
-  Restructuring change;
-  std::vector<ShellIndex> shell_index(shells_.size());
-  std::vector<NodeIndex> index_of(nodes_.size());
+PatchResult Patch::result() const {
+  PatchResult result;
+  result.shell_index.resize(shells_.size());
+  result.node_index.resize(nodes_.size());
+  auto& [change, shell_index, index_of] = result;
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     const PatchNode& node = nodes_[i];
     if (node.model.valid()) {
@@ -89,8 +86,7 @@ Restructuring Patch::result(std::vector<ShellIndex>* index_of_shell) const {
     shell_index[i] = ShellIndex(model_->shell_count() + change.new_shells.size());
     change.new_shells.push_back({nodes_in_model(shells_[i].corners, index_of), shells_[i].parent});
   }
-  if (index_of_shell != nullptr) *index_of_shell = std::move(shell_index);
-  return change;
+  return result;
 }
 
 Model Patch::as_model(std::vector<LocalShell>& shells_of_model) const {

@@ -109,11 +109,34 @@ bool help_last(const RepairContext& context, RepairState& state) {
   return split_failing_quads(context, state) || heal_failing_shells(context, state);
 }
 
+/// How bad a piece is: its failing shells, then its warnings and the triangles above the max at its nodes.
+struct Badness {
+  std::size_t failing = 0;
+  double other = 0;
+  auto operator<=>(const Badness&) const = default;
+};
+
+constexpr double kTriangleTooMany = 4;  ///< counts as so many warnings: thinning a cluster may make some shells warn
+
+Badness badness_of(const RepairContext& context, const RepairState& state) {
+  Badness badness;
+  for (std::size_t s = 0; s < context.patch.shell_count(); ++s) {
+    const PatchShell& shell = context.patch.shell(LocalShell(s));
+    if (!shell.is_alive) continue;
+    badness.failing += shell.state.grade() == quality::Grade::fail ? 1 : 0;
+    badness.other += shell.state.grade() == quality::Grade::warn ? 1 : 0;
+  }
+  for (const ClusterLeft& cluster : clusters_left(context, state))
+    badness.other += kTriangleTooMany * (static_cast<double>(cluster.triangles) - state.clusters.allowed);
+  return badness;
+}
+
 /// Rounds until a thorough one makes nothing better and no failing quad has halves that pass, the options' limit, or the
 /// repair is cancelled. Returns how many.
 int run_rounds(const RepairContext& context, RepairState& state) {
   int rounds = 0;
   std::optional<std::size_t> failing_before;  // at the last thorough round
+  Badness best = badness_of(context, state);
   relax_neighbourhood(context, state);
   for (int& round = state.progress.round; round < context.options.max_rounds && !state.progress.stopped; ++round) {
     rounds = round + 1;
@@ -124,7 +147,10 @@ int run_rounds(const RepairContext& context, RepairState& state) {
       const std::size_t failing = bad_shells(context.patch, state.history, quality::Grade::fail).size();
       const bool is_stuck = !better || (failing_before && failing >= *failing_before);
       failing_before = failing;
-      if (is_stuck && !help_last(context, state) && !better) break;
+      if (is_stuck) help_last(context, state);
+      const Badness now = badness_of(context, state);
+      if (!(now < best)) break;
+      best = now;
     }
     // A round that made nothing better is followed by a thorough one, which tries every shell again.
     state.effort = better || is_thorough ? kQuickEffort : kThoroughEffort;
@@ -153,11 +179,14 @@ std::vector<Unrepaired> unrepaired_shells(const Patch& patch, const RepairState&
   return unrepaired;
 }
 
-/// The number of edges between two triangles that aren't among `before`.
-std::size_t added_pairs(const Patch& patch, const std::vector<std::pair<LocalNode, LocalNode>>& before) {
-  const auto now = pair_edges(patch);
-  return static_cast<std::size_t>(
-      std::count_if(now.begin(), now.end(), [&](const auto& edge) { return !std::binary_search(before.begin(), before.end(), edge); }));
+/// The edges between two triangles that aren't among `before`.
+std::vector<NodePair> added_pairs(const Patch& patch, const std::vector<std::pair<LocalNode, LocalNode>>& before,
+                                  const std::vector<NodeIndex>& index_of) {
+  std::vector<NodePair> added;
+  for (const auto& edge : pair_edges(patch))
+    if (!std::binary_search(before.begin(), before.end(), edge))
+      added.emplace_back(index_of[edge.first.value], index_of[edge.second.value]);
+  return added;
 }
 
 /// The limits that all shells are judged by.
@@ -196,36 +225,63 @@ std::optional<std::uint64_t> stop_of(const Options& options, std::size_t piece) 
   return options.stop_at[piece];
 }
 
-/// Repairs one piece, which may add the triangles of `share`. When it is stopped, it returns what it has reached.
+/// What a piece of a repair works on.
+struct PieceWork {
+  Patch patch;
+  RepairState state;
+};
+
+/// Gives up what a repair did that made nothing better.
+void give_up(PieceWork& work, Patch at_first, ChangeHistory history) {
+  work.patch = std::move(at_first);
+  work.state.history = std::move(history);
+  work.state.record.accepted = {};
+}
+
+/// What has become of a piece. `pairs_before`: pair_edges at first.
+Repaired result_of(const RepairContext& exact, const RepairState& state, const std::vector<std::pair<LocalNode, LocalNode>>& pairs_before) {
+  PatchResult result = exact.patch.result();
+  Repaired repaired;
+  if (state.progress.stopped) repaired.stopped = StoppedAt{{state.progress.step}};
+  repaired.bad_left = state.progress.bad_left();
+  repaired.relaxed = result.change.moved.size();
+  repaired.done = state.record.accepted;
+  repaired.clusters_left = clusters_left(exact, state);
+  repaired.triangle_pairs = added_pairs(exact.patch, pairs_before, result.node_index);
+  repaired.unrepaired = unrepaired_shells(exact.patch, state, result.shell_index);
+  repaired.change = std::move(result.change);
+  return repaired;
+}
+
+/// Repairs one piece, which may add the triangles of `share`. When it is stopped, it returns what it has reached. If that is no better than
+/// the piece was, nothing of it is kept: so a repair of what a repair left does nothing, unless it helps.
 Result<Repaired> repair_piece(const WholeRepair& whole, std::size_t piece, const TriangleLimits& share, PiecesProgress& pieces,
                               const std::function<void()>& wake) {
   const RepairInput& input = whole.input;
-  Patch patch(input.model, whole.pieces[piece].shells, 0, input.rules, input.options.relax.feature_angle);
-  const RepairContext exact{patch, input.surface, input.criteria, input.options, whole.limits.exact};
-  const RepairContext strict{patch, input.surface, input.criteria, input.options, whole.limits.strict};
   const RoundProgress* round = nullptr;
   const Progress progress = pieces.of(piece, wake, [&] { return PieceStatus{round->round + 1, round->bad_left()}; });
-  RepairState state{.history = history_of(patch, whole.scope, share), .record = {}, .progress = {progress, stop_of(input.options, piece)}};
-  round = &state.progress;
-  state.progress.bad_left = [&] { return bad_shells(patch, state.history, quality::Grade::warn).size(); };
+  PieceWork work{Patch(input.model, whole.pieces[piece].shells, 0, input.rules, input.options.relax.feature_angle),
+                 RepairState{.history = {}, .record = {}, .progress = {progress, stop_of(input.options, piece)}}};
+  auto& [patch, state] = work;
+  state.history = history_of(patch, whole.scope, share);
   state.clusters = whole.clusters;
-  Repaired repaired;
+  round = &state.progress;
+  state.progress.bad_left = [&work] { return bad_shells(work.patch, work.state.history, quality::Grade::warn).size(); };
+  const RepairContext exact{patch, input.surface, input.criteria, input.options, whole.limits.exact};
+  const RepairContext strict{patch, input.surface, input.criteria, input.options, whole.limits.strict};
   judge_all(strict);
+  const Patch patch_before = patch;
+  const ChangeHistory history_before = state.history;
+  const Badness bad_before = badness_of(strict, state);
   const auto pairs_before = pair_edges(patch);
   state.history.was_bad.assign(patch.shell_count(), 0);
   for (const LocalShell bad : bad_shells(patch, state.history, quality::Grade::warn)) state.history.was_bad[bad.value] = 1;
-  repaired.rounds = run_rounds(strict, state);
+  const int rounds = run_rounds(strict, state);
   if (state.progress.stopped && !is_cancelled(*state.progress.stopped)) return fail(*state.progress.stopped);
+  if (!(badness_of(strict, state) < bad_before)) give_up(work, patch_before, history_before);
   judge_all(exact);
-  if (state.progress.stopped) repaired.stopped = StoppedAt{{state.progress.step}};
-  repaired.bad_left = state.progress.bad_left();
-  std::vector<ShellIndex> index_of;
-  repaired.change = patch.result(&index_of);
-  repaired.relaxed = repaired.change.moved.size();
-  repaired.done = state.record.accepted;
-  repaired.clusters_left = clusters_left(exact, state);
-  repaired.triangle_pairs = added_pairs(patch, pairs_before);
-  repaired.unrepaired = unrepaired_shells(patch, state, index_of);
+  Repaired repaired = result_of(exact, state, pairs_before);
+  repaired.rounds = rounds;
   return repaired;
 }
 

@@ -11,7 +11,8 @@
 namespace prismesh::mesh::repair {
 
 /// Repairs the shells of `scope` (ascending) that fail or warn. Their neighbours may change with them; no shell that passes fails
-/// afterwards. Returns the change of the model and what was done. When it is stopped, it returns what it has reached by then, which is
+/// afterwards. What makes nothing better isn't kept, in each piece: fewer shells fail, or as many and fewer warn or stand at crowded nodes.
+/// Returns the change of the model and what was done. When it is stopped, it returns what it has reached by then, which is
 /// as valid as a finished repair. Deterministic, whatever the number of threads.
 Result<Repaired> repair(const RepairInput& input, const ShellSet& scope, const Progress& progress = {});
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "mesh/model/model.h"
@@ -25,6 +26,9 @@ struct StoppedAt {
   std::vector<std::uint64_t> steps;  ///< of each piece, from 1; 0: it had been finished
 };
 
+/// Two nodes, those of the model or new ones: node_count() + i is Restructuring::new_nodes[i].
+using NodePair = std::pair<NodeIndex, NodeIndex>;
+
 struct Repaired {
   Restructuring change;
   std::array<std::size_t, kOperationCount> done{};  ///< accepted operations, by Operation
@@ -34,7 +38,7 @@ struct Repaired {
   std::size_t clusters_before = 0;                  ///< nodes of the scope with too many triangles about them
   std::vector<ClusterLeft> clusters_left;           ///< those that are left, and those that the repair made
   std::vector<Unrepaired> unrepaired;               ///< still failing, ascending by shell
-  std::size_t triangle_pairs = 0;                   ///< edges between two triangles that the repair had to make, so that shells pass
+  std::vector<NodePair> triangle_pairs;             ///< edges between two triangles that the repair had to make, so that shells pass
   int rounds = 0;                                   ///< begun
   std::optional<StoppedAt> stopped;                 ///< before it was finished; `change` is what it had reached
 };

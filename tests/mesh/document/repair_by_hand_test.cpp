@@ -1,4 +1,4 @@
-// What a repair leaves failing, no single operation by hand heals.
+// What a repair leaves failing, no single operation by hand heals, nor does another repair.
 #include <algorithm>
 #include <cstdio>
 #include <random>
@@ -10,6 +10,7 @@
 
 #include "mesh/document/damage.h"
 #include "mesh/model/adjacency.h"
+#include "mesh/model/topology_change.h"
 #include "tests/mesh/document/document_fixture.h"
 
 namespace prismesh::mesh::document {
@@ -133,14 +134,26 @@ std::vector<std::string> healing_operations(const Document& document) {
   return healing;
 }
 
-TEST(RepairByHand, heals_nothing_that_a_repair_left) {
+void expect_second_repair_changes_nothing(Document& document) {
+  const Generation once = document.current();
+  const EditReport report = must_apply(document, R"({"edit":"repair"})");
+  const Generation& twice = document.current();
+  EXPECT_EQ(once.counts, twice.counts);
+  EXPECT_EQ(report.nodes_moved + report.elements_added + report.elements_removed, 0U);
+  EXPECT_THAT(moved_nodes(once.model, twice.model), IsEmpty());
+  EXPECT_TRUE(changes_between(once.model, twice.model).empty());
+}
+
+TEST(RepairByHand, heals_nothing_that_a_repair_left_nor_does_another_repair) {
   const Folder folder;
   for (const unsigned seed : {2U, 30U}) {
+    SCOPED_TRACE(seed);
     Document document = open_sheet(folder, ShapedSheet(seed));
     must_apply(document, ShapedSheet(seed).edit);
     const EditReport report = must_apply(document, R"({"edit":"repair"})");
-    EXPECT_GT(report.before.fail, report.after.fail) << seed;
-    EXPECT_THAT(healing_operations(document), IsEmpty()) << seed;
+    EXPECT_GT(report.before.fail, report.after.fail);
+    EXPECT_THAT(healing_operations(document), IsEmpty());
+    expect_second_repair_changes_nothing(document);
   }
 }
 

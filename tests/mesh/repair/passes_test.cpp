@@ -44,6 +44,23 @@ TEST(RelaxNeighbourhood, moves_nodes_and_makes_no_shell_worse) {
   }
 }
 
+TEST(MaxMoves, count_from_the_model_that_the_options_name) {
+  const Grid grid = flat(16, 16);
+  const Model from = model_of(grid.positions(), grid.shells());
+  constexpr double kMax = 0.3;
+  for (unsigned seed = 0; seed < 3; ++seed) {
+    const Model bad = shaken_sheet(seed);
+    const relax::ReferenceSurface surface(bad, all_shells(bad), 30);
+    Options options;
+    options.moves_from = &from;
+    options.relax.max_move_on_surface = options.relax.max_move_on_line = kMax;
+    const auto repaired = repair({bad, surface, {}, {quality::default_criteria(), 1.0}, options}, all_shells(bad));
+    ASSERT_TRUE(repaired.has_value());
+    EXPECT_GT(repaired->change.moved.size(), 20U);
+    for (const auto& [node, place] : repaired->change.moved) EXPECT_LE((place - from.position(node)).norm(), kMax + 1e-9) << seed;
+  }
+}
+
 /// A flat sheet of triangles with one inner node moved far along the sheet.
 Model triangles_with_a_bad_node(const Grid& grid) {
   std::vector<Vec3> positions = grid.positions();

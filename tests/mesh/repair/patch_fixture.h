@@ -25,7 +25,7 @@ struct PatchFixture {
     patch.begin();
     return collapse_strip(context, strip);
   }
-  Model after() const { return carried_out(model, patch.result()); }
+  Model after() const { return carried_out(model, patch.result().change); }
   LocalShell shell(std::size_t s) const { return patch.find(shell_at(s)); }
 
   Model model;

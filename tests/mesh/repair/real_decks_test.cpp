@@ -183,7 +183,7 @@ TEST_P(RealDecks, are_repaired_where_a_bump_damaged_them) {
     EXPECT_LE(10 * fails_left.size(), fails.size());
   }
   // Where only halves of failing quads pass, twice as many triangles are allowed.
-  const std::size_t max_triangles = live_shells(bad) / (repaired->triangle_pairs > 0 ? 10 : 20);
+  const std::size_t max_triangles = live_shells(bad) / (!repaired->triangle_pairs.empty() ? 10 : 20);
   EXPECT_LE(triangles(good), std::max(triangles(bad), max_triangles));
   const Shape a = shape_of(bad), b = shape_of(good);
   EXPECT_EQ(a.euler, b.euler);
