@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Counts what the core's operations cost, in instructions and memory, and compares with tests/cost/table.txt: cost.py PROGRAM [--write].
+"""Counts what the core's operations cost, in instructions and memory, and compares with a table.
 
 Status 0: nothing costs more than the table says; 1: something does; 77: it can't be counted here. docs/building.md says how to read it.
 """
@@ -12,7 +12,6 @@ import sys
 from dataclasses import dataclass
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-TABLE = os.path.join(ROOT, "tests", "cost", "table.txt")
 SIZES = (10_000, 40_000)  # shells
 MAX_RATIO = 1.1  # of a figure to that of the table
 # By order, the max growth between the two sizes.
@@ -71,6 +70,14 @@ def read_table(text, name="table.txt"):
     if made_with is None:
         raise CostError(f"{name}: it is empty")
     return made_with, rows
+
+
+def content_of(path):
+    try:
+        with open(path, encoding="utf-8") as file:
+            return file.read()
+    except (OSError, UnicodeDecodeError) as error:
+        raise CostError(f"{path} can't be read: {error}; ./station cost --write makes it anew") from error
 
 
 def order_of(growth):
@@ -177,25 +184,25 @@ def print_beside(table, measured):
 
 def main():
     parser = argparse.ArgumentParser(prog="station cost", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("program")
+    parser.add_argument("program", help="tests/cost/main.cpp, built for release")
     parser.add_argument("--write", action="store_true", help="write what is measured into the table")
+    parser.add_argument("--table", default=os.path.join(ROOT, "tests", "cost", "table.txt"), help="default: tests/cost/table.txt")
+    parser.add_argument("--out", default=os.path.join(ROOT, "out", "cost"), help="where Callgrind's dumps go (default: out/cost)")
     options = parser.parse_args()
     made_with, table = None, {}
-    if not options.write or os.path.exists(TABLE):
-        with open(TABLE, encoding="utf-8") as file:
-            made_with, table = read_table(file.read(), os.path.relpath(TABLE, ROOT))
+    if not options.write or os.path.exists(options.table):
+        made_with, table = read_table(content_of(options.table), os.path.relpath(options.table, ROOT))
     if reason := reason_to_skip(options.program, None if options.write else made_with):
         print(f"SKIPPED: costs weren't counted: {reason}")
         return SKIPPED
-    folder = os.path.join(ROOT, "out", "cost")
-    shutil.rmtree(folder, ignore_errors=True)
-    os.makedirs(folder)
-    measured = figures_of([run(options.program, size, folder) for size in SIZES], SIZES[0])
-    print("What is measured, and in brackets what tests/cost/table.txt has:")
+    shutil.rmtree(options.out, ignore_errors=True)
+    os.makedirs(options.out)
+    measured = figures_of([run(options.program, size, options.out) for size in SIZES], SIZES[0])
+    print("What is measured, and in brackets what the table has:")
     print_beside(table, measured)
     dearer, cheaper = compare(table, measured)
     if options.write:
-        with open(TABLE, "w", encoding="utf-8") as file:
+        with open(options.table, "w", encoding="utf-8") as file:
             file.write(write_table(made_here(options.program), measured, table))
         print("Written. Say in the commit why figures have changed.")
         return 0

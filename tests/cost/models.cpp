@@ -96,7 +96,7 @@ Model flat_sheet(std::size_t shells) {
 
 Model rails(std::size_t shells) {
   Model model = sheets({hat(), hat()}, shells / 2 / (hat().size() - 1));
-  for (std::size_t i = kShellsOfDefect / 2; i < model.shell_count(); i += kShellsOfDefect) {
+  for (std::size_t i = kShellsOfDefect / 2 + 20; i < model.shell_count(); i += kShellsOfDefect) {
     const mesh::ShellNodes& nodes = model.shell_nodes[i];
     const Vec3 a = model.position(nodes.node[0]), opposite = model.position(nodes.node[2]);
     model.positions.set(nodes.node[0].value, a + 0.8 * (opposite - a));

@@ -16,6 +16,7 @@
 #include "mesh/deck/sample.h"
 #include "mesh/document/drag.h"
 #include "mesh/document/edit_json.h"
+#include "mesh/document/find_dependents.h"
 #include "mesh/document/journal.h"
 #include "mesh/document/open.h"
 #include "mesh/document/prepare.h"
@@ -76,6 +77,19 @@ Work open_deck(const std::filesystem::path& path) {
 Work open_document(const Inputs& inputs) {
   const auto opened = std::make_shared<deck::OpenedDeck>(need(deck::open(inputs.folder / "sample.k")));
   return [opened, &inputs] { keep(need(document::open(inputs.folder / "sample.k", std::move(*opened), {}))); };
+}
+
+/// What depends on the sheets of the sample, which are many times as thick here. So they stand for finer meshes: where shells are smaller
+/// than their thickness, welds are looked for beyond their neighbours.
+Work dependents_of_thick_sheets(const Inputs& inputs) {
+  constexpr double kThicker = 12;  // as thick for their size as those of the sample of some five million shells
+  const auto document = std::make_shared<const Document>(inputs.sample);
+  const auto model = std::make_shared<Model>(document->opened->model);
+  std::vector<Part> parts = *model->parts;
+  for (Part& part : parts)
+    if (part.thickness) *part.thickness *= kThicker;
+  model->parts = std::make_shared<const std::vector<Part>>(std::move(parts));
+  return [document, model] { keep(document::find_dependents(*document->deck, *model, document->opened->relations->element_uses)); };
 }
 
 // --- selecting ---
@@ -182,9 +196,13 @@ Work undo(const Inputs& inputs) {
   return [document] { (void)need(document::apply(*document, Edit(document::Undo{}))); };
 }
 
-Work split(const Inputs& inputs) {
-  const Model& model = inputs.sample.current().model;
-  return prepare_edit(inputs.sample, R"("edit":"split","at":["shell:)" + std::to_string(model.shell_ids[model.shell_count() / 2]) + "\"]");
+/// Splits a shell of the sample; if asked for, after all nodes were moved.
+Work split(const Inputs& inputs, bool moved) {
+  const auto document = std::make_shared<Document>(inputs.sample);
+  if (moved) do_edit(*document, R"("edit":"translate","by":[1,0,0.3],"on":"all","falloff":{"profile":"constant"})");
+  const Model& model = document->current().model;
+  const Edit edit = edit_of(R"("edit":"split","at":["shell:)" + std::to_string(model.shell_ids[model.shell_count() / 2]) + "\"]");
+  return [document, edit] { keep(need(document::prepare(*document, edit))); };
 }
 
 Work append_to_journal(const Inputs& inputs) {
@@ -227,7 +245,8 @@ std::vector<Operation> make_operations() {
       {"open Nastran", [](const Inputs& in) { return open_deck(in.folder / "rails.bdf"); }},
       {"open Radioss", [](const Inputs& in) { return open_deck(in.folder / "rails_0000.rad"); }},
       {"open Abaqus", [](const Inputs& in) { return open_deck(in.folder / "rails.inp"); }},
-      {"open a document", open_document},
+      {"document of a deck", open_document},
+      {"welds of thick sheets", dependents_of_thick_sheets},
       {"adjacency", [=](const Inputs& in) -> Work { return [&model = rails(in)] { keep(build_adjacency(model)); }; }},
       {"metrics", [=](const Inputs& in) -> Work { return [&model = rails(in)] { keep(quality::judge_model(model, criteria())); }; }},
       {"report", [=](const Inputs& in) -> Work { return [&model = rails(in)] { keep(quality::report(model, criteria(), {})); }; }},
@@ -256,7 +275,8 @@ std::vector<Operation> make_operations() {
       {"lift", [](const Inputs& in) { return prepare_edit(in.pulled, kLift + grab_of(in)); }},
       {"lift three nodes", [](const Inputs& in) { return prepare_edit(in.rails, small_pull(in)); }},
       {"undo", undo},
-      {"split by hand", split},
+      {"split by hand", [](const Inputs& in) { return split(in, false); }},
+      {"split after all moved", [](const Inputs& in) { return split(in, true); }},
       {"relax", [](const Inputs& in) { return prepare_edit(in.pulled, R"("edit":"relax")"); }},
       {"repair", [](const Inputs& in) { return prepare_edit(in.rails, R"("edit":"repair","scope":"failed")"); }},
       {"journal", append_to_journal},
