@@ -193,7 +193,7 @@ def main():
     if not options.write or os.path.exists(options.table):
         made_with, table = read_table(content_of(options.table), os.path.relpath(options.table, ROOT))
     if reason := reason_to_skip(options.program, None if options.write else made_with):
-        print(f"SKIPPED: costs weren't counted: {reason}")
+        print(f"SKIPPED: cost.table counted nothing: {reason}")  # ./station test repeats such lines at its end
         return SKIPPED
     shutil.rmtree(options.out, ignore_errors=True)
     os.makedirs(options.out)

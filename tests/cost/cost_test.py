@@ -168,7 +168,7 @@ class Running(unittest.TestCase):
         os.mkdir(self.path("empty"))
         without = self.judge(path=self.path("empty"))
         self.assertEqual(without.returncode, cost.SKIPPED)
-        self.assertIn("SKIPPED: costs weren't counted: valgrind is missing", without.stdout)
+        self.assertIn("SKIPPED: cost.table counted nothing: valgrind is missing", without.stdout)
         self.script("cost", PROGRAM.replace("GCC 12", "GCC 13"))
         other = self.judge()
         self.assertEqual(other.returncode, cost.SKIPPED)
