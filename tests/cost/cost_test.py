@@ -92,6 +92,10 @@ class Tables(unittest.TestCase):
         for growth, order in ((1.0, "constant"), (2.0, "root"), (4.0, "linear"), (4.6, "n log n"), (16, "quadratic"), (64, "quadratic")):
             self.assertEqual(cost.order_of(growth), order)
 
+    def test_writing_keeps_figures_that_are_off_by_less_than_a_hundredth(self):
+        text = cost.write_table("GCC 12", measured(instructions=4030, growth=4.1, peak=19.9, growth_of_bytes=4.01), table())
+        self.assertEqual(cost.read_table(text)[1]["region on a flat sheet"].figures, (4000, 4.1, 20, 4))
+
     def test_the_project_has_one(self):
         made_with, rows = cost.read_table(cost.content_of(os.path.join(HERE, "table.txt")))
         self.assertIn("GCC", made_with)

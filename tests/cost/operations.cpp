@@ -157,6 +157,7 @@ std::string grab_of(const Inputs& inputs) {
 }
 constexpr const char* kTranslate = R"("edit":"translate","by":[0.6,0.7,3])";
 constexpr const char* kLift = R"("edit":"lift","distance":3)";
+constexpr const char* kLiftEach = R"("edit":"lift","distance":3,"normals":"each")";
 constexpr const char* kSlide = R"("edit":"slide","by":[0.6,2,0])";
 constexpr const char* kRotate = R"("edit":"rotate","point":[200,0,0],"axis":[0.2,1,0],"degrees":2)";
 
@@ -184,11 +185,19 @@ Work prepare_edit(const Document& document, const std::string& fields) {
   return [&document, edit = edit_of(fields)] { keep(need(document::prepare(document, edit))); };
 }
 
-/// A pull of nine shells, whatever the size of the model.
-std::string small_pull(const Inputs& inputs) {
-  const Model& model = inputs.rails.current().model;
+/// The rails with three neighbours on the top selected, whatever the size of the model. Selecting by an expression costs the model; lifting
+/// what is selected doesn't.
+Document with_three_selected(const Inputs& inputs) {
+  Document document = inputs.rails;
+  const Model& model = document.current().model;
   const std::int64_t middle = model.node_ids[middle_of_top(model).value];
-  return R"("edit":"lift","distance":1,"on":")" + std::to_string(middle - 1) + "-" + std::to_string(middle + 1) + "\"";
+  do_edit(document, R"("edit":"select","expr":")" + std::to_string(middle - 1) + "-" + std::to_string(middle + 1) + "\"");
+  return document;
+}
+constexpr const char* kSmallLift = R"("edit":"lift","distance":1)";
+
+Work lift_three_nodes(const Inputs& inputs) {
+  return [document = with_three_selected(inputs), edit = edit_of(kSmallLift)] { keep(need(document::prepare(document, edit))); };
 }
 
 Work undo(const Inputs& inputs) {
@@ -232,9 +241,9 @@ Work first_snapshot(const Inputs& inputs) {
 
 Work snapshot_after_small_edit(const Inputs& inputs) {
   const auto publisher = std::make_shared<ipc::SnapshotPublisher>();
-  const auto document = std::make_shared<Document>(inputs.rails);
+  const auto document = std::make_shared<Document>(with_three_selected(inputs));
   (void)need(publisher->publish(*document, true));
-  do_edit(*document, small_pull(inputs));
+  do_edit(*document, kSmallLift);
   return [publisher, document] { keep(need(publisher->publish(*document, true))); };
 }
 
@@ -270,10 +279,11 @@ std::vector<Operation> make_operations() {
       {"begin drag", drag_begin},
       {"drag step: translate", [](const Inputs& in) { return drag_step(in, kTranslate); }},
       {"drag step: lift", [](const Inputs& in) { return drag_step(in, kLift); }},
+      {"drag step: lift each", [](const Inputs& in) { return drag_step(in, kLiftEach); }},
       {"drag step: slide", [](const Inputs& in) { return drag_step(in, kSlide); }},
       {"drag step: rotate", [](const Inputs& in) { return drag_step(in, kRotate); }},
       {"lift", [](const Inputs& in) { return prepare_edit(in.pulled, kLift + grab_of(in)); }},
-      {"lift three nodes", [](const Inputs& in) { return prepare_edit(in.rails, small_pull(in)); }},
+      {"lift three nodes", lift_three_nodes},
       {"undo", undo},
       {"split by hand", [](const Inputs& in) { return split(in, false); }},
       {"split after all moved", [](const Inputs& in) { return split(in, true); }},
