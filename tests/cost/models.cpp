@@ -45,8 +45,8 @@ Section walk(const std::vector<std::pair<int, double>>& stretches) {
 }
 
 const Section& hat() {
-  static const Section section = walk({{10, 90}, {12, -90}, {40, -90}, {12, 90}, {10, 0}});
-  return section;
+  static const Section kSection = walk({{10, 90}, {12, -90}, {40, -90}, {12, 90}, {10, 0}});
+  return kSection;
 }
 constexpr std::size_t kTopBegin = 10 + 4 + 12 + 4, kTopEnd = kTopBegin + 40;  ///< columns of the hat
 

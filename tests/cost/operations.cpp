@@ -315,8 +315,8 @@ Inputs make_inputs(const std::filesystem::path& folder, std::size_t shells) {
 }
 
 const std::vector<Operation>& operations() {
-  static const std::vector<Operation> all = make_operations();
-  return all;
+  static const std::vector<Operation> kAll = make_operations();
+  return kAll;
 }
 
 }  // namespace prismesh::cost
