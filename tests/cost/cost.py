@@ -81,7 +81,7 @@ def content_of(path):
 
 
 def order_of(growth):
-    return next((order for order, most in ORDERS.items() if growth <= most), "quadratic")
+    return next((order for order, max_growth in ORDERS.items() if growth <= max_growth), "quadratic")
 
 
 def write_table(made_with, measured, old):

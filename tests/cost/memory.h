@@ -7,7 +7,7 @@ namespace prismesh::cost {
 
 /// Begins a measurement: the peak is counted above what is allocated now.
 void begin_memory_peak();
-/// The most that was allocated at once since then, without what was allocated before.
+/// Max bytes allocated at once since then, without what was allocated before.
 std::size_t memory_peak_bytes();
 
 }  // namespace prismesh::cost

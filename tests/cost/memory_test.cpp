@@ -12,7 +12,7 @@ struct alignas(64) Wide {
   double values[8];
 };
 
-TEST(MemoryPeak, is_the_most_at_once_above_what_there_was) {
+TEST(MemoryPeak, is_the_max_at_once_above_what_there_was) {
   const auto before = std::make_unique<std::vector<char>>(50'000);
   begin_memory_peak();
   EXPECT_EQ(memory_peak_bytes(), 0u);
