@@ -2,6 +2,7 @@
 
 passed=0 failed=0 skipped=0
 failures=()
+skip_reasons=()  # of tests that say why
 
 count_one() {  # count_one NAME STATUS: a check that isn't a CTest test
   if [ "$2" -eq 0 ]; then
@@ -30,6 +31,7 @@ run_ctest() {
     left=$(($(attribute "$junit.flat" skipped) + $(attribute "$junit.flat" disabled)))
     which=$(sed -n 's/.*<testcase.* name="\([^"]*\)".*status="fail".*/\1/p' "$junit.flat")
     rm -f "$junit.flat"
+    mapfile -t -O "${#skip_reasons[@]}" skip_reasons < <(sed -n 's/.*\(SKIPPED: .*\)/\1/p' "$junit")
   fi
   # A run that ended badly without a failed test (no test found, a crash of the runner) is a failure all the same.
   if [ "$status" -ne 0 ] && [ "$bad" -eq 0 ]; then
@@ -152,6 +154,7 @@ closing_line() {
   local failure
   printf '\n'
   for failure in "${failures[@]}"; do echo "FAILED  $failure"; done
+  [ "${#skip_reasons[@]}" -eq 0 ] || printf '%s\n' "${skip_reasons[@]}"
   [ "$skipped" -eq 0 ] || [ -n "${PRISMESH_MODELS:-}" ] || echo "PRISMESH_MODELS is not set: the tests on real decks were skipped."
   echo "$passed passed, $failed failed, $skipped skipped"
   [ "$failed" -eq 0 ]

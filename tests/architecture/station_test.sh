@@ -53,6 +53,20 @@ expect "a good run" "$(closing 0 "$(printf "$suite" 0)")" "9 passed, 0 failed, 3
 expect "a run with failures" "$(closing 8 "$(printf "$suite" 2)")" "7 passed, 2 failed, 3 skipped / 0 / 1"
 expect "a run that found nothing" "$(closing 8 "")" "0 passed, 1 failed, 0 skipped / 0 / 1"
 
+said=$(
+  cd "$folder" || exit
+  mkdir -p out/test
+  source "$root/scripts/steps.sh"
+  source "$root/scripts/test.sh"
+  export PATH=$folder/bin:$PATH FAKE_STATUS=0
+  # shellcheck disable=SC2059
+  FAKE_JUNIT=$(printf "$suite" 0 | sed 's|</testsuite>|<testcase name="b" status="notrun"><system-out>SKIPPED: b: no valgrind\n</system-out></testcase></testsuite>|')
+  export FAKE_JUNIT
+  run_ctest fake nowhere >/dev/null 2>&1
+  closing_line | grep SKIPPED
+)
+expect "the reason of a skipped test" "$said" "SKIPPED: b: no valgrind"
+
 warned=$(
   cd "$folder" || exit
   mkdir -p out/test tests

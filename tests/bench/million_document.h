@@ -4,6 +4,7 @@
 #include <memory>
 #include <numeric>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "mesh/document/document.h"
@@ -13,9 +14,8 @@
 
 namespace prismesh::mesh::bench {
 
-/// million_quads with everything a document needs.
-inline Model complete_million() {
-  Model model = million_quads();
+/// A model of positions, shells and parts with everything a document needs. Ids count from 1.
+inline Model complete(Model model) {
   std::vector<std::int64_t> node_ids(model.node_count());
   std::vector<std::int64_t> shell_ids(model.shell_count());
   std::iota(node_ids.begin(), node_ids.end(), 1);
@@ -37,7 +37,7 @@ inline document::Document open_million() {
   document::OpenOptions options;
   options.target_size = 5.0;
   options.history_bytes = std::size_t{1} << 30;
-  return document::open("million.k", {deck, complete_million()}, options).value();
+  return document::open("million.k", {deck, complete(million_quads())}, options).value();
 }
 
 /// A patch of 100 x 100 nodes in the middle of the sheet, 1001 nodes a row.

@@ -8,6 +8,18 @@
 
 namespace prismesh::mesh::bench {
 
+/// A part of steel sheet, 1 mm thick; mm, t, s.
+inline Part steel_sheet() {
+  Part part;
+  part.id = 1;
+  part.defined = true;
+  part.thickness = 1.0;
+  part.density = 7.85e-9;
+  part.youngs_modulus = 210000.0;
+  part.poissons_ratio = 0.3;
+  return part;
+}
+
 /// Positions and shells only; made once.
 inline const Model& million_quads() {
   static const Model model = [] {
@@ -30,14 +42,7 @@ inline const Model& million_quads() {
         const std::size_t a = j * kStride + i;
         m.shell_nodes.set(j * kSide + i, {{NodeIndex(a), NodeIndex(a + 1), NodeIndex(a + kStride + 1), NodeIndex(a + kStride)}});
       }
-    Part part;
-    part.id = 1;
-    part.defined = true;
-    part.thickness = 1.0;
-    part.density = 7.85e-9;
-    part.youngs_modulus = 210000.0;
-    part.poissons_ratio = 0.3;
-    m.parts = std::make_shared<const std::vector<Part>>(1, part);
+    m.parts = std::make_shared<const std::vector<Part>>(1, steel_sheet());
     return m;
   }();
   return model;
