@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <optional>
 
-#include "ipc/device_messages.h"
-#include "ipc/device_page.h"
+#include "ipc/device/messages.h"
+#include "ipc/device/page.h"
 
 namespace prismesh::cli {
 

@@ -11,7 +11,7 @@
 #include "cli/device_figures.h"
 #include "cli/json_output.h"
 #include "cli/report_text.h"
-#include "ipc/reconnecting_client.h"
+#include "ipc/device/client.h"
 
 namespace prismesh::cli {
 

@@ -9,9 +9,9 @@
 #include "cli/json_output.h"
 #include "cli/progress_bar.h"
 #include "cli/report_text.h"
-#include "ipc/failure.h"
-#include "ipc/messages_json.h"
-#include "ipc/reconnecting_client.h"
+#include "ipc/model/client.h"
+#include "ipc/model/messages_json.h"
+#include "ipc/wire/failure.h"
 #include "mesh/document/edit_kinds.h"
 #include "mesh/quality/criteria.h"
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "ipc/reconnecting_client.h"
+#include "ipc/device/client.h"
 #include "kiosk/stereo/tracked_eyes.h"
 #include "kiosk/tools/trace.h"
 

@@ -10,8 +10,8 @@
 #include <optional>
 #include <vector>
 
-#include "ipc/field_page.h"
-#include "ipc/snapshot.h"
+#include "ipc/model/field_page.h"
+#include "ipc/model/snapshot.h"
 #include "kiosk/display/headless.h"
 #include "kiosk/panels/gui.h"
 #include "kiosk/render/offscreen.h"

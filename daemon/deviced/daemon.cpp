@@ -13,11 +13,11 @@
 #include "base/log.h"
 #include "daemon/deviced/loop_thread.h"
 #include "daemon/deviced/station.h"
-#include "ipc/device_client.h"
-#include "ipc/device_messages_json.h"
-#include "ipc/device_page.h"
-#include "ipc/failure.h"
-#include "ipc/server.h"
+#include "ipc/device/client.h"
+#include "ipc/device/messages_json.h"
+#include "ipc/device/page.h"
+#include "ipc/wire/failure.h"
+#include "ipc/wire/server.h"
 
 namespace prismesh::deviced {
 

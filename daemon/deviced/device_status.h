@@ -9,8 +9,8 @@
 #include "drivers/prism_servo/mask_control.h"
 #include "drivers/prism_servo/prism_servo.h"
 #include "drivers/settings/settings.h"
-#include "ipc/device_messages.h"
-#include "ipc/device_page.h"
+#include "ipc/device/messages.h"
+#include "ipc/device/page.h"
 
 namespace prismesh::deviced {
 

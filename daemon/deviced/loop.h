@@ -15,7 +15,7 @@
 #include "drivers/prism_servo/dynamixel/servo.h"
 #include "drivers/prism_servo/mask_control.h"
 #include "drivers/settings/settings.h"
-#include "ipc/device_page.h"
+#include "ipc/device/page.h"
 
 namespace prismesh::deviced {
 

@@ -7,7 +7,7 @@
 #include "base/log.h"
 #include "base/program_options.h"
 #include "daemon/deviced/daemon.h"
-#include "ipc/client.h"
+#include "ipc/wire/runtime_directory.h"
 
 namespace {
 

@@ -12,7 +12,7 @@
 #include "daemon/deviced/loop.h"
 #include "drivers/display/profile.h"
 #include "drivers/settings/settings.h"
-#include "ipc/device_page.h"
+#include "ipc/device/page.h"
 
 namespace prismesh::deviced {
 

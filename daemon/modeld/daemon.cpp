@@ -17,11 +17,11 @@
 #include "daemon/modeld/request_scheduler.h"
 #include "daemon/modeld/watchdog.h"
 #include "daemon/modeld/worker.h"
-#include "ipc/client.h"
-#include "ipc/failure.h"
-#include "ipc/messages_json.h"
-#include "ipc/server.h"
-#include "ipc/state_page.h"
+#include "ipc/model/client.h"
+#include "ipc/model/messages_json.h"
+#include "ipc/model/state_page.h"
+#include "ipc/wire/failure.h"
+#include "ipc/wire/server.h"
 
 namespace prismesh::modeld {
 

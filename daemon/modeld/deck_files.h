@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "ipc/messages.h"
+#include "ipc/model/messages.h"
 #include "mesh/document/document.h"
 
 namespace prismesh::modeld {

@@ -8,7 +8,7 @@
 #include "base/clock.h"
 #include "base/progress.h"
 #include "daemon/modeld/state_folder.h"
-#include "ipc/messages.h"
+#include "ipc/model/messages.h"
 #include "mesh/deck/open.h"
 #include "mesh/deck/staged_save.h"
 #include "mesh/document/document.h"

@@ -1,8 +1,8 @@
 // A drag under way: the core's drag and the preview page that its frames go to.
 #pragma once
 
-#include "ipc/messages.h"
-#include "ipc/preview.h"
+#include "ipc/model/messages.h"
+#include "ipc/model/preview.h"
 #include "mesh/document/drag.h"
 
 namespace prismesh::modeld {

@@ -3,7 +3,7 @@
 
 #include "base/clock.h"
 #include "base/error.h"
-#include "ipc/messages.h"
+#include "ipc/model/messages.h"
 #include "mesh/document/document.h"
 
 namespace prismesh::modeld {

@@ -9,8 +9,8 @@
 
 #include "base/file.h"
 #include "base/progress.h"
-#include "ipc/field_page.h"
-#include "ipc/messages.h"
+#include "ipc/model/field_page.h"
+#include "ipc/model/messages.h"
 #include "mesh/document/document.h"
 #include "mesh/document/generation.h"
 

@@ -10,7 +10,7 @@
 #include "daemon/modeld/daemon.h"
 #include "daemon/modeld/state_folder.h"
 #include "drivers/settings/settings.h"
-#include "ipc/client.h"
+#include "ipc/wire/runtime_directory.h"
 
 namespace {
 

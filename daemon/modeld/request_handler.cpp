@@ -5,10 +5,10 @@
 #include <utility>
 
 #include "daemon/modeld/edit_preview.h"
-#include "daemon/modeld/quality_figures.h"
-#include "ipc/failure.h"
+#include "ipc/wire/failure.h"
 #include "mesh/document/deck_relations.h"
 #include "mesh/document/followed_edges.h"
+#include "mesh/document/quality_figures.h"
 
 namespace prismesh::modeld {
 
@@ -85,12 +85,12 @@ Outcome RequestHandler::count(const ipc::Count& request, const Progress& progres
 
 Outcome RequestHandler::quality(const ipc::GetQuality& request) const {
   if (!keeper_.is_open()) return {ipc::failed_from({"", 0, "no document is open"}), {}, {}, {}};
-  return told(quality_figures(keeper_.document(), request));
+  return told(mesh::document::quality_figures(keeper_.document(), request));
 }
 
 Outcome RequestHandler::find(const ipc::FindShells& request) const {
   if (!keeper_.is_open()) return {ipc::failed_from({"", 0, "no document is open"}), {}, {}, {}};
-  return told(find_shells(keeper_.document(), request));
+  return told(mesh::document::find_shells(keeper_.document(), request));
 }
 
 Outcome RequestHandler::preview(const ipc::PreviewEdit& request) const {

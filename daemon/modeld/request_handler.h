@@ -11,8 +11,8 @@
 #include "daemon/modeld/document_keeper.h"
 #include "daemon/modeld/drag_session.h"
 #include "daemon/modeld/field_maker.h"
-#include "ipc/messages.h"
-#include "ipc/snapshot_publisher.h"
+#include "ipc/model/messages.h"
+#include "ipc/model/snapshot_publisher.h"
 
 namespace prismesh::modeld {
 

@@ -14,9 +14,9 @@
 
 #include "daemon/modeld/request_handler.h"
 #include "daemon/modeld/worker.h"
-#include "ipc/messages.h"
-#include "ipc/server.h"
-#include "ipc/state_page.h"
+#include "ipc/model/messages.h"
+#include "ipc/model/state_page.h"
+#include "ipc/wire/server.h"
 
 namespace prismesh::modeld {
 

@@ -5,7 +5,7 @@
 #include <unistd.h>
 
 #include "base/file.h"
-#include "ipc/byte_stream.h"
+#include "ipc/wire/byte_stream.h"
 
 namespace prismesh::modeld {
 

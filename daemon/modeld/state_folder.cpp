@@ -10,8 +10,8 @@
 #include <unistd.h>
 
 #include "base/file.h"
-#include "ipc/descriptor.h"
-#include "ipc/messages_json.h"
+#include "ipc/model/messages_json.h"
+#include "ipc/wire/descriptor.h"
 
 namespace prismesh::modeld {
 

@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "base/hash.h"
-#include "ipc/messages.h"
+#include "ipc/model/messages.h"
 
 namespace prismesh::modeld {
 

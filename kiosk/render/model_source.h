@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "ipc/snapshot.h"
+#include "ipc/model/snapshot.h"
 
 namespace prismesh::kiosk::render {
 

@@ -5,7 +5,7 @@
 #include <unordered_set>
 #include <vector>
 
-#include "ipc/preview.h"
+#include "ipc/model/preview.h"
 #include "kiosk/render/glyphs.h"
 #include "kiosk/render/mesh_change.h"
 #include "kiosk/render/outline.h"

@@ -8,7 +8,7 @@
 #include <span>
 
 #include "base/error.h"
-#include "ipc/preview.h"
+#include "ipc/model/preview.h"
 #include "kiosk/render/mesh_change.h"
 #include "kiosk/render/model_source.h"
 #include "kiosk/render/picture.h"

@@ -12,7 +12,7 @@
 
 #include "drivers/display/eyes.h"
 #include "drivers/eye_tracker/filter.h"
-#include "ipc/device_page.h"
+#include "ipc/device/page.h"
 #include "kiosk/stereo/lit_time.h"
 
 namespace prismesh::kiosk::stereo {

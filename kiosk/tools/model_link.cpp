@@ -8,7 +8,7 @@
 
 #include "base/progress.h"
 #include "base/readable_number.h"
-#include "ipc/failure.h"
+#include "ipc/wire/failure.h"
 #include "kiosk/tools/notices.h"
 #include "mesh/document/edit_kinds.h"
 

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "base/clock.h"
-#include "ipc/client.h"
+#include "ipc/model/client.h"
 #include "kiosk/tools/deck_warnings.h"
 #include "kiosk/tools/notice.h"
 #include "kiosk/tools/trace.h"

@@ -51,11 +51,24 @@ TEST(ModuleTable, is_that_of_the_tree) {
 // --- allowed includes ---
 
 TEST(IncludeRules, programs_use_ipc_and_what_it_uses) {
-  for (const char* program : {"cli", "kiosk", "daemon/modeld", "daemon/deviced"})
-    for (const char* below : {"ipc", "mesh/document", "mesh/model", "drivers/display", "base"})
+  for (const char* program : {"cli", "kiosk", "daemon/modeld"})
+    for (const char* below : {"ipc/model", "ipc/wire", "mesh/document", "mesh/model", "base"})
       EXPECT_TRUE(may_include(program, below)) << program << " " << below;
-  EXPECT_TRUE(may_include("ipc", "mesh/document"));
+  for (const char* program : {"cli", "kiosk", "daemon/deviced"})
+    for (const char* below : {"ipc/device", "ipc/wire", "drivers/display", "base"})
+      EXPECT_TRUE(may_include(program, below)) << program << " " << below;
+  EXPECT_TRUE(may_include("ipc/model", "mesh/document"));
   EXPECT_TRUE(may_include("mesh/model", "base"));
+}
+
+TEST(IncludeRules, what_knows_devices_sees_no_deck_and_what_knows_decks_no_device) {
+  for (const char* of_devices : {"daemon/deviced", "ipc/device"})
+    for (const char* of_decks : {"ipc/model", "mesh/document", "mesh/model"})
+      EXPECT_FALSE(may_include(of_devices, of_decks)) << of_devices << " " << of_decks;
+  for (const char* of_decks : {"daemon/modeld", "ipc/model"})
+    for (const char* of_devices : {"ipc/device", "drivers/port", "drivers/prism_servo"})
+      EXPECT_FALSE(may_include(of_decks, of_devices)) << of_decks << " " << of_devices;
+  for (const char* part : {"mesh/model", "drivers/port", "ipc/model", "ipc/device"}) EXPECT_FALSE(may_include("ipc/wire", part)) << part;
 }
 
 TEST(IncludeRules, programs_never_include_each_other) {
@@ -68,8 +81,8 @@ TEST(IncludeRules, programs_never_include_each_other) {
 
 TEST(IncludeRules, no_module_includes_those_that_use_it) {
   EXPECT_FALSE(may_include("base", "mesh/model"));
-  EXPECT_FALSE(may_include("mesh/document", "ipc"));
-  EXPECT_FALSE(may_include("ipc", "kiosk"));
+  EXPECT_FALSE(may_include("mesh/document", "ipc/model"));
+  EXPECT_FALSE(may_include("ipc/model", "kiosk"));
   EXPECT_FALSE(may_include("kiosk", "tests"));
   for (const Module& module : modules())
     for (const std::string& used : module.uses) EXPECT_FALSE(may_include(used, module.folder)) << used << " " << module.folder;

@@ -44,13 +44,15 @@ const std::vector<Module>& modules() {
       {"drivers/prism_servo", {"drivers/display", "drivers/eye_tracker"}},
       {"drivers/prism_servo/dynamixel", {"drivers/prism_servo", "drivers/settings"}},
 
-      {"ipc", {"mesh/document", "drivers/prism_servo"}},
+      {"ipc/wire", {"base/json"}},
+      {"ipc/device", {"ipc/wire", "drivers/prism_servo"}},
+      {"ipc/model", {"ipc/wire", "mesh/document"}},
 
-      {"daemon/modeld", {"ipc", "drivers/settings"}},
-      {"daemon/deviced", {"ipc", "drivers/eye_tracker/configured", "drivers/prism_servo/dynamixel"}},
+      {"daemon/modeld", {"ipc/model", "drivers/settings"}},
+      {"daemon/deviced", {"ipc/device", "drivers/eye_tracker/configured", "drivers/prism_servo/dynamixel"}},
 
       {"kiosk/display", {"drivers/display"}},
-      {"kiosk/stereo", {"ipc"}},
+      {"kiosk/stereo", {"ipc/device", "ipc/model"}},
       {"kiosk/render", {"kiosk/stereo"}},
       {"kiosk/tools", {"kiosk/display", "kiosk/render"}},
       {"kiosk/panels", {"kiosk/tools"}},
@@ -67,7 +69,7 @@ const std::vector<Module>& modules() {
        {"kiosk/tools/files", "kiosk/tools/comparison", "kiosk/tools/selection", "kiosk/tools/shaping", "kiosk/tools/quality",
         "kiosk/tools/mesh_operations", "kiosk/tools/parts", "kiosk/tools/view", "kiosk/calibration", "drivers/settings"}},
 
-      {"cli", {"ipc"}},
+      {"cli", {"ipc/device", "ipc/model"}},
   };
   return kModules;
 }

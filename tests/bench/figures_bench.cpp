@@ -1,12 +1,12 @@
 // Measures what the model server computes of a million shells for a view: the quality panel's figures, a bar's shells, fields.
 #include <benchmark/benchmark.h>
 
-#include "daemon/modeld/quality_figures.h"
-#include "ipc/messages_json.h"
+#include "ipc/model/messages_json.h"
 #include "mesh/document/field.h"
 #include "mesh/document/field_wish.h"
 #include "mesh/document/make_field.h"
 #include "mesh/document/prepare.h"
+#include "mesh/document/quality_figures.h"
 #include "tests/bench/million_document.h"
 
 namespace {
@@ -31,7 +31,7 @@ void quality_figures_of_a_million(benchmark::State& state) {
   const ipc::GetQuality request{state.range(0) != 0 ? "warpage" : "", state.range(1) != 0};
   std::size_t errors = 0, bytes = 0;
   for (auto _ : state) {
-    const ipc::Quality quality = modeld::quality_figures(million(), request).value();
+    const ipc::Quality quality = mesh::document::quality_figures(million(), request).value();
     errors = quality.error_count;
     bytes = ipc::encode_answer(1, quality, 0).size();
   }
@@ -52,7 +52,7 @@ void shells_of_a_bar_of_a_million(benchmark::State& state) {
   ipc::FindShells request;
   request.metric = "warpage";
   request.from = 3;
-  for (auto _ : state) benchmark::DoNotOptimize(modeld::find_shells(million(), request).value());
+  for (auto _ : state) benchmark::DoNotOptimize(mesh::document::find_shells(million(), request).value());
 }
 BENCHMARK(shells_of_a_bar_of_a_million)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 

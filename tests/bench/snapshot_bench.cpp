@@ -4,7 +4,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "ipc/snapshot_publisher.h"
+#include "ipc/model/snapshot_publisher.h"
 #include "mesh/document/prepare.h"
 #include "tests/bench/million_document.h"
 

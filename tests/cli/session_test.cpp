@@ -4,9 +4,9 @@
 #include <utility>
 #include <vector>
 
-#include "ipc/messages_json.h"
-#include "ipc/server.h"
-#include "ipc/state_page.h"
+#include "ipc/model/messages_json.h"
+#include "ipc/model/state_page.h"
+#include "ipc/wire/server.h"
 #include "tests/cli/cli_fixture.h"
 
 namespace prismesh::cli {

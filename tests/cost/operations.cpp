@@ -11,7 +11,7 @@
 #include <string_view>
 #include <utility>
 
-#include "ipc/snapshot_publisher.h"
+#include "ipc/model/snapshot_publisher.h"
 #include "mesh/deck/open.h"
 #include "mesh/deck/sample.h"
 #include "mesh/document/drag.h"

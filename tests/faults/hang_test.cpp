@@ -4,8 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "ipc/client.h"
-#include "ipc/reconnecting_client.h"
+#include "ipc/model/client.h"
 #include "mesh/document/edit_json.h"
 #include "tests/daemon/modeld/folder.h"
 #include "tests/station/process.h"

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "daemon/modeld/daemon.h"
-#include "ipc/client.h"
+#include "ipc/model/client.h"
 #include "mesh/document/edit_json.h"
 #include "tests/daemon/modeld/folder.h"
 #include "tests/faults/refused_memory.h"

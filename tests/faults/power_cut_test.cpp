@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "ipc/reconnecting_client.h"
+#include "ipc/model/client.h"
 #include "mesh/document/edit_json.h"
 #include "tests/faults/session.h"
 #include "tests/station/process.h"

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "base/file.h"
-#include "ipc/server.h"
+#include "ipc/wire/server.h"
 #include "mesh/deck/open.h"
 #include "mesh/deck/save_record.h"
 #include "tests/faults/power_cut.h"

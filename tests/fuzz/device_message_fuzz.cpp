@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "ipc/device_messages_json.h"
+#include "ipc/device/messages_json.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace prismesh::ipc;

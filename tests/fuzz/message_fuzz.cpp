@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "ipc/messages_json.h"
+#include "ipc/model/messages_json.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace prismesh::ipc;

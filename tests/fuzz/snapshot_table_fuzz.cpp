@@ -5,9 +5,9 @@
 #include <memory>
 #include <vector>
 
-#include "ipc/preview.h"
-#include "ipc/snapshot.h"
-#include "ipc/snapshot_table.h"
+#include "ipc/model/preview.h"
+#include "ipc/model/snapshot.h"
+#include "ipc/model/snapshot_table.h"
 
 namespace {
 

@@ -14,9 +14,9 @@
 
 #include <gtest/gtest.h>
 
-#include "ipc/device_messages_json.h"
-#include "ipc/device_page.h"
-#include "ipc/server.h"
+#include "ipc/device/messages_json.h"
+#include "ipc/device/page.h"
+#include "ipc/wire/server.h"
 #include "kiosk/device_link.h"
 
 namespace prismesh::kiosk {

@@ -9,12 +9,12 @@
 #include <gtest/gtest.h>
 
 #include "base/progress.h"
-#include "ipc/messages_json.h"
-#include "ipc/server.h"
-#include "ipc/snapshot_publisher.h"
-#include "ipc/state_page.h"
+#include "ipc/model/messages_json.h"
+#include "ipc/model/snapshot_publisher.h"
+#include "ipc/model/state_page.h"
+#include "ipc/wire/server.h"
 #include "kiosk/tools/model_link.h"
-#include "tests/ipc/small_document.h"
+#include "tests/ipc/model/small_document.h"
 
 namespace prismesh::kiosk::tools {
 namespace {

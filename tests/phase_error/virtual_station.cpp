@@ -12,7 +12,7 @@
 #include "drivers/eye_tracker/dynasight/simulator.h"
 #include "drivers/port/memory_line.h"
 #include "drivers/prism_servo/dynamixel/simulated_servo.h"
-#include "ipc/device_page.h"
+#include "ipc/device/page.h"
 #include "kiosk/stereo/lit_time.h"
 
 namespace prismesh::phase_error {

@@ -10,7 +10,7 @@
 
 #include "drivers/display/profile.h"
 #include "drivers/settings/settings.h"
-#include "ipc/device_client.h"
+#include "ipc/device/client.h"
 #include "tests/station/station.h"
 
 namespace prismesh::test {

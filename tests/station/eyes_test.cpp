@@ -13,8 +13,8 @@
 
 #include "base/clock.h"
 #include "drivers/eye_tracker/configured/simulator.h"
-#include "ipc/client.h"
-#include "ipc/device_client.h"
+#include "ipc/device/client.h"
+#include "ipc/model/client.h"
 #include "tests/station/station.h"
 #include "tests/support/places.h"
 

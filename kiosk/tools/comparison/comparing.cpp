@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "ipc/failure.h"
+#include "ipc/wire/failure.h"
 
 namespace prismesh::kiosk::tools::comparison {
 

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "ipc/snapshot_info.h"
+#include "ipc/model/snapshot_info.h"
 
 namespace prismesh::kiosk::tools::quality {
 

@@ -7,7 +7,7 @@
 #include <variant>
 #include <vector>
 
-#include "ipc/messages.h"
+#include "ipc/model/messages.h"
 #include "kiosk/tools/quality/criteria_facts.h"
 #include "kiosk/tools/quality/mend_limits.h"
 #include "mesh/document/edit.h"

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "ipc/messages.h"
+#include "ipc/model/messages.h"
 
 namespace prismesh::kiosk::tools::quality {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "ipc/messages_json.h"
+#include "ipc/model/messages_json.h"
 
 namespace prismesh::kiosk::tools::shaping {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "ipc/snapshot.h"
+#include "ipc/model/snapshot.h"
 #include "kiosk/tools/model_link.h"
 #include "mesh/document/edit.h"
 

@@ -10,9 +10,9 @@
 #include "base/clock.h"
 #include "drivers/eye_tracker/opentrack/datagram.h"
 #include "drivers/port/udp_port.h"
-#include "ipc/line_socket.h"
-#include "ipc/reconnecting_client.h"
-#include "ipc/server.h"
+#include "ipc/device/client.h"
+#include "ipc/wire/line_socket.h"
+#include "ipc/wire/server.h"
 #include "tests/station/process.h"
 #include "tests/support/places.h"
 

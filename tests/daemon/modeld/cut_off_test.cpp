@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "ipc/messages_json.h"
+#include "ipc/model/messages_json.h"
 #include "mesh/document/edit_json.h"
 #include "tests/daemon/modeld/restartable_daemon.h"
 #include "tests/support/places.h"

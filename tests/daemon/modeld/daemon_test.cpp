@@ -7,10 +7,10 @@
 #include <gtest/gtest.h>
 #include <poll.h>
 
-#include "ipc/client.h"
-#include "ipc/line_socket.h"
-#include "ipc/messages_json.h"
-#include "ipc/server.h"
+#include "ipc/model/client.h"
+#include "ipc/model/messages_json.h"
+#include "ipc/wire/line_socket.h"
+#include "ipc/wire/server.h"
 #include "tests/daemon/modeld/folder.h"
 
 namespace prismesh::modeld {

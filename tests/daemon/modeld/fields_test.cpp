@@ -9,7 +9,7 @@
 #include <Eigen/Geometry>
 
 #include "daemon/modeld/daemon.h"
-#include "ipc/client.h"
+#include "ipc/model/client.h"
 #include "mesh/document/edit_json.h"
 #include "tests/daemon/modeld/folder.h"
 

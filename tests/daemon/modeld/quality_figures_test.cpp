@@ -1,5 +1,5 @@
 // Quality figures and previews of edits, compared with the test's own counts.
-#include "daemon/modeld/quality_figures.h"
+#include "mesh/document/quality_figures.h"
 
 #include <algorithm>
 #include <cmath>

@@ -15,7 +15,7 @@
 #include "daemon/modeld/document_keeper.h"
 #include "daemon/modeld/request_handler.h"
 #include "daemon/modeld/save_intent.h"
-#include "ipc/messages_json.h"
+#include "ipc/model/messages_json.h"
 #include "mesh/document/edit_json.h"
 #include "tests/daemon/modeld/folder.h"
 #include "tests/support/few_descriptors.h"

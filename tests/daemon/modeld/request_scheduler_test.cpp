@@ -12,7 +12,7 @@
 
 #include <gtest/gtest.h>
 
-#include "ipc/snapshot.h"
+#include "ipc/model/snapshot.h"
 #include "mesh/document/edit_json.h"
 #include "tests/daemon/modeld/folder.h"
 #include "tests/support/few_descriptors.h"

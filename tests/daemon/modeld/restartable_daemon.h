@@ -13,7 +13,7 @@
 
 #include <gtest/gtest.h>
 
-#include "ipc/reconnecting_client.h"
+#include "ipc/model/client.h"
 #include "tests/daemon/modeld/folder.h"
 #include "tests/station/process.h"
 #include "tests/support/places.h"
