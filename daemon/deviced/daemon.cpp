@@ -11,13 +11,13 @@
 #include <vector>
 
 #include "base/log.h"
+#include "daemon/common/service.h"
 #include "daemon/deviced/loop_thread.h"
 #include "daemon/deviced/station.h"
 #include "ipc/device/client.h"
 #include "ipc/device/messages_json.h"
 #include "ipc/device/page.h"
-#include "ipc/wire/failure.h"
-#include "ipc/wire/server.h"
+#include "ipc/device/roles.h"
 
 namespace prismesh::deviced {
 
@@ -53,9 +53,23 @@ void log(const ipc::DeviceInfo& device) {
     logging::warn("{}: {}", what, device.trouble);
 }
 
+struct DeviceProtocol {
+  using Request = ipc::DeviceRequest;
+  using Answer = ipc::DeviceAnswer;
+  using Event = ipc::DeviceEvent;
+  using Hello = ipc::DeviceHello;
+  static constexpr int kVersion = ipc::kDeviceProtocolVersion;
+  static auto decode(std::string_view line) { return ipc::decode_device_request(line); }
+  static std::string encode_answer(std::uint64_t to, const Answer& answer, std::size_t descriptors) {
+    return ipc::encode_device_answer(to, answer, descriptors);
+  }
+  static std::string encode_event(const Event& event) { return ipc::encode_device_event(event); }
+  static bool must_be_told(const Answer&) { return false; }
+};
+
 }  // namespace
 
-struct Daemon::Impl final : ipc::ServerHandler {
+struct Daemon::Impl final : daemon::Service<DeviceProtocol> {
   Impl(DaemonOptions wanted, StationPlan sound, ipc::DevicePage device_page)
       : options(std::move(wanted)), plan(std::move(sound)), page(std::move(device_page)) {}
 
@@ -68,8 +82,6 @@ struct Daemon::Impl final : ipc::ServerHandler {
   StationPlan plan;
   ipc::DevicePage page;
   bool memory_locked = false;
-  std::optional<ipc::Server> server;
-  std::map<ipc::ClientId, std::string> greeted;  ///< name of the client's program
   std::set<ipc::ClientId> showing_stereo;
   bool picture_mono = true;  ///< as last sent to the loop
   std::optional<ipc::ClientId> holder;
@@ -112,7 +124,7 @@ struct Daemon::Impl final : ipc::ServerHandler {
       if (last.device == device || now - last.at < kReportPause) continue;
       last = {device, now};
       log(device);
-      send_to_all(ipc::DeviceChanged{device});
+      tell_all(ipc::DeviceChanged{device});
     }
   }
 
@@ -127,47 +139,26 @@ struct Daemon::Impl final : ipc::ServerHandler {
 
   // --- from the socket ---
 
-  void connected(ipc::ClientId) override {}
+  Result<Welcomed> welcome(ipc::ClientId) override {
+    Result<ipc::Descriptor> shared = page.descriptor().duplicate();
+    if (!shared) return fail(std::move(shared.error()));
+    Welcomed welcomed{ipc::DeviceWelcome{ipc::kDeviceProtocolVersion, PRISMESH_VERSION}, {}};
+    welcomed.descriptors.push_back(std::move(*shared));
+    return welcomed;
+  }
 
-  void line(ipc::ClientId client, std::string_view line) override {
-    const auto request = ipc::decode_device_request(line);
-    if (!request) return answer(client, request.error().number, ipc::Failed{"request", 0, request.error().message});
-    if (const auto* hello = std::get_if<ipc::DeviceHello>(&request->request)) return greet(client, request->number, *hello);
-    if (!greeted.contains(client)) {
-      answer(client, request->number, ipc::Failed{"request", 0, "the first message must be a hello"});
-      return server->cut(client, "it didn't greet");
-    }
-    if (const auto* shown = std::get_if<ipc::PictureShown>(&request->request)) {
+  void request(ipc::ClientId client, std::uint64_t number, ipc::DeviceRequest request, std::size_t) override {
+    if (const auto* shown = std::get_if<ipc::PictureShown>(&request)) {
       if (shown->mono)
         showing_stereo.erase(client);
       else
         showing_stereo.insert(client);
       return picture_shown();
     }
-    answer(client, request->number, std::visit([&](const auto& wanted) { return done(client, wanted); }, request->request));
+    answer(client, number, std::visit([&](const auto& wanted) { return done(client, wanted); }, request));
   }
 
-  void greet(ipc::ClientId client, std::uint64_t number, const ipc::DeviceHello& hello) {
-    std::optional<std::string> refusal = server->refusal(client);
-    if (!refusal) refusal = ipc::protocol_refusal(ipc::kDeviceProtocolVersion, hello.protocol, hello.program);
-    if (refusal) {
-      answer(client, number, ipc::Failed{"", 0, *refusal});
-      return server->cut(client, "it was refused");
-    }
-    Result<ipc::Descriptor> shared = page.descriptor().duplicate();
-    if (!shared) return server->cut(client, shared.error().text());
-    greeted[client] = hello.program;
-    server->welcome(client);
-    logging::info("client {} is {}", client, hello.program);
-    std::vector<ipc::Descriptor> descriptors;
-    descriptors.push_back(std::move(*shared));
-    server->send(client, ipc::encode_device_answer(number, ipc::DeviceWelcome{ipc::kDeviceProtocolVersion, PRISMESH_VERSION}, 1),
-                 std::move(descriptors));
-  }
-
-  void disconnected(ipc::ClientId client, const std::string& why) override {
-    if (greeted.erase(client) == 0) return;
-    logging::info("client {} left: {}", client, why);
+  void left(ipc::ClientId client) override {
     if (holder == client) end_hold();
     // The picture that this client drew is no longer shown.
     if (showing_stereo.erase(client) > 0) picture_shown();
@@ -200,7 +191,7 @@ struct Daemon::Impl final : ipc::ServerHandler {
     if (std::abs(wanted.position_mm) > travel_mm)
       return ipc::Failed{"", 0, fmt::format("position_mm must be from {} to {}, not {}", -travel_mm, travel_mm, wanted.position_mm)};
     if (holder && *holder != client)
-      return ipc::Failed{"", 0, "the mask is held by " + greeted[*holder] + " already: end that program's calibration first"};
+      return ipc::Failed{"", 0, "the mask is held by " + greeted().at(*holder) + " already: end that program's calibration first"};
     holder = client;
     hold = wanted;
     send_to_loop(SetHold{wanted.position_mm});
@@ -215,7 +206,7 @@ struct Daemon::Impl final : ipc::ServerHandler {
 
   ipc::DeviceAnswer done(ipc::ClientId client, const ipc::Rearm&) {
     if (const auto failed = no_servo()) return *failed;
-    logging::info("{} (client {}) rearms the prism servo", greeted[client], client);
+    logging::info("{} (client {}) rearms the prism servo", greeted().at(client), client);
     send_to_loop(RequestRearm{});
     return ipc::Done{};
   }
@@ -237,21 +228,6 @@ struct Daemon::Impl final : ipc::ServerHandler {
     logging::error("{}", no_station);
     return ipc::failed_from(started.error());
   }
-
-  // --- to the socket ---
-
-  void answer(ipc::ClientId client, std::uint64_t number, const ipc::DeviceAnswer& answer) {
-    if (const auto* refused = std::get_if<ipc::Failed>(&answer))
-      logging::info("client {}: refused: {}", client, ipc::error_from(*refused).text());
-    server->send(client, ipc::encode_device_answer(number, answer));
-  }
-
-  void send_to_all(const ipc::DeviceEvent& event) {
-    const std::string line = ipc::encode_device_event(event);
-    // A copy: a send that cuts its client off changes the map.
-    const std::map<ipc::ClientId, std::string> all = greeted;
-    for (const auto& [client, program] : all) server->send(client, line);
-  }
 };
 
 Result<Daemon> Daemon::start(const DaemonOptions& options) {
@@ -260,15 +236,14 @@ Result<Daemon> Daemon::start(const DaemonOptions& options) {
   Result<ipc::DevicePage> page = ipc::DevicePage::create();
   if (!page) return fail(std::move(page.error()));
   auto state = std::make_unique<Impl>(options, std::move(*plan), std::move(*page));
-  Result<ipc::Server> server = ipc::Server::listen(ipc::device_socket_path(options.runtime_directory), *state, limits());
-  if (!server) return fail(std::move(server.error()));
-  state->server = std::move(*server);
+  if (Result<void> listening = state->listen(ipc::device_socket_path(options.runtime_directory), limits()); !listening)
+    return fail(std::move(listening.error()));
   if (const std::string refused = lock_memory(); refused.empty())
     state->memory_locked = true;
   else
     logging::warn("{}", refused);
   if (Result<void> started = state->start_station(); !started) return fail(std::move(started.error()));
-  state->server->every(kPollPeriod, [state = state.get()] { state->poll_station(); });
+  state->every(kPollPeriod, [state = state.get()] { state->poll_station(); });
   return Daemon(std::move(state));
 }
 
@@ -276,7 +251,7 @@ Daemon::Daemon(std::unique_ptr<Impl> state) : impl_(std::move(state)) {}
 Daemon::Daemon(Daemon&&) noexcept = default;
 Daemon::~Daemon() = default;
 
-void Daemon::run() { impl_->server->run(); }
-void Daemon::stop() { impl_->server->stop(); }
+void Daemon::run() { impl_->run("drives the devices"); }
+void Daemon::stop() { impl_->stop(); }
 
 }  // namespace prismesh::deviced

@@ -64,6 +64,7 @@ Result<std::unique_ptr<LoopThread>> LoopThread::start(DeviceLoop& loop, ipc::Dev
   made->health_.pid = ::getpid();
   made->health_.memory_locked = memory_locked;
   made->health_.simulated = simulated;
+  made->heartbeat_.begin();  // before the thread runs: one that never begins is missed too
   int status = made->create(true);
   if (status == EPERM) {
     made->refused_ =
@@ -115,9 +116,10 @@ void LoopThread::run() {
     const std::int64_t cpu_ns = thread_cpu_ns();
     loop_.tick(began_ns);
     record_timing(due_ns, began_ns, thread_cpu_ns() - cpu_ns);
-    ticks_.fetch_add(1, std::memory_order_relaxed);
+    heartbeat_.beat();
     due_ns = next_due_ns(due_ns, clock_.now_ns());
   }
+  heartbeat_.end();
   for (int tick = 0; tick < kWindDownTicks; ++tick) {
     loop_.wind_down(clock_.now_ns());
     sleep_until(clock_.now_ns() + kTickPeriodNs);

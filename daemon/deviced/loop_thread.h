@@ -12,6 +12,7 @@
 
 #include "base/clock.h"
 #include "base/error.h"
+#include "daemon/common/watchdog.h"
 #include "daemon/deviced/loop.h"
 
 namespace prismesh::deviced {
@@ -35,8 +36,8 @@ class LoopThread {
 
   /// Why SCHED_FIFO was refused and what would help; empty if it was granted.
   const std::string& refused() const { return refused_; }
-  /// Number of completed ticks, for the watchdog.
-  std::uint64_t ticks() const { return ticks_.load(std::memory_order_relaxed); }
+  /// Beats at each completed tick.
+  const daemon::Heartbeat& heartbeat() const { return heartbeat_; }
 
  private:
   LoopThread(DeviceLoop& loop, ipc::DevicePage& page) : loop_(loop), page_(page) {}
@@ -53,7 +54,7 @@ class LoopThread {
   std::string refused_;
   bool running_ = false;
   std::atomic<bool> stop_ = false;
-  std::atomic<std::uint64_t> ticks_{0};
+  daemon::Heartbeat heartbeat_;
   pthread_t thread_{};
 };
 

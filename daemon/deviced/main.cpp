@@ -1,11 +1,8 @@
 // prismesh-deviced, the daemon for eye tracker and prism servo: options and logging. The rest is in daemon.h.
-#include <csignal>
-#include <cstdio>
-
 #include <sys/prctl.h>
 
 #include "base/log.h"
-#include "base/program_options.h"
+#include "daemon/common/program.h"
 #include "daemon/deviced/daemon.h"
 #include "ipc/wire/runtime_directory.h"
 
@@ -19,22 +16,15 @@ constexpr const char* kUsage =
 }  // namespace
 
 int main(int argc, char** argv) {
-  const prismesh::ProgramOptions given = prismesh::program_options({"prismesh-deviced", kUsage, {"--runtime-dir", "--config"}}, argc, argv);
-  if (given.end) return *given.end;
-  // A closed log pipe is a write error, and must not end the process.
-  std::signal(SIGPIPE, SIG_IGN);
-  // Writing a core file takes seconds, during which the ports would stay open without a loop.
-  ::prctl(PR_SET_DUMPABLE, 0);
-  prismesh::logging::start("deviced");
-
-  const prismesh::deviced::DaemonOptions options{prismesh::ipc::runtime_directory(given.path("--runtime-dir")), given.path("--config")};
-  prismesh::Result<prismesh::deviced::Daemon> daemon = prismesh::deviced::Daemon::start(options);
-  if (!daemon) {
-    std::fprintf(stderr, "%s\n", daemon.error().text().c_str());
-    return 1;
-  }
-  prismesh::logging::info("listening in {}", options.runtime_directory.string());
-  daemon->run();
-  prismesh::logging::info("ended");
-  return 0;
+  const auto serve = [](const prismesh::ProgramOptions& given) -> prismesh::Result<int> {
+    // Writing a core file takes seconds, during which the ports would stay open without a loop.
+    ::prctl(PR_SET_DUMPABLE, 0);
+    const prismesh::deviced::DaemonOptions options{prismesh::ipc::runtime_directory(given.path("--runtime-dir")), given.path("--config")};
+    prismesh::Result<prismesh::deviced::Daemon> daemon = prismesh::deviced::Daemon::start(options);
+    if (!daemon) return prismesh::fail(daemon.error());
+    prismesh::logging::info("listening in {}", options.runtime_directory.string());
+    daemon->run();
+    return 0;
+  };
+  return prismesh::daemon::run({"prismesh-deviced", kUsage, {"--runtime-dir", "--config"}, serve}, argc, argv);
 }

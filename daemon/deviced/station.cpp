@@ -7,7 +7,6 @@
 
 #include "base/clock.h"
 #include "daemon/deviced/loop_thread.h"
-#include "daemon/deviced/watchdog.h"
 #include "drivers/eye_tracker/configured/simulator.h"
 #include "drivers/port/keeper_thread.h"
 #include "drivers/port/open_port.h"
@@ -75,6 +74,10 @@ LoopSettings loop_settings(const StationPlan& plan) {
   return settings;
 }
 
+/// A loop that hasn't ticked for 1.5 s hangs. The devices have stopped by their own watchdogs by then.
+constexpr std::chrono::milliseconds kWatchPeriod{250};
+constexpr int kMaxMissedBeats = 6;
+
 /// Members stand in the order of their construction; they end in reverse: watchdog, loop, keepers, simulators.
 struct Station::Impl {
   explicit Impl(StationPlan wanted) : plan(std::move(wanted)) {}
@@ -89,7 +92,7 @@ struct Station::Impl {
   std::optional<DeviceLoop> loop;
   std::optional<drivers::port::KeeperThread> keeper_thread;
   std::unique_ptr<LoopThread> loop_thread;
-  std::optional<Watchdog> watchdog;
+  std::optional<daemon::Watchdog> watchdog;
 
   EyesChanged eyes;
   ServoStatus servo;
@@ -137,7 +140,9 @@ struct Station::Impl {
     Result<std::unique_ptr<LoopThread>> started = LoopThread::start(*loop, page, memory_locked, simulated_tracker || simulated_servo);
     if (!started) return fail(std::move(started.error()));
     loop_thread = std::move(*started);
-    watchdog.emplace([thread = loop_thread.get()] { return thread->ticks(); }, std::move(stuck));
+    std::vector<daemon::HeartbeatMonitor> watched;
+    watched.emplace_back("the device loop hangs", loop_thread->heartbeat(), kMaxMissedBeats);
+    watchdog.emplace(std::move(watched), kWatchPeriod, [stuck = std::move(stuck)](const std::string&) { stuck(); });
     return {};
   }
 

@@ -1,12 +1,10 @@
 // prismesh-modeld, the document daemon: options and logging. The rest is in daemon.h.
 #include <chrono>
-#include <csignal>
-#include <cstdio>
 #include <filesystem>
 #include <optional>
 
 #include "base/log.h"
-#include "base/program_options.h"
+#include "daemon/common/program.h"
 #include "daemon/modeld/daemon.h"
 #include "daemon/modeld/state_folder.h"
 #include "drivers/settings/settings.h"
@@ -23,37 +21,25 @@ constexpr const char* kUsage =
 }  // namespace
 
 int main(int argc, char** argv) {
-  const prismesh::ProgramOptions given =
-      prismesh::program_options({"prismesh-modeld", kUsage, {"--runtime-dir", "--state-dir", "--config"}}, argc, argv);
-  if (given.end) return *given.end;
-  // A closed log pipe (SIGPIPE) and a journal beyond the file size limit (SIGXFSZ) are write errors, and must not end the process.
-  std::signal(SIGPIPE, SIG_IGN);
-  std::signal(SIGXFSZ, SIG_IGN);
-  prismesh::logging::start("modeld");
-
-  const std::optional<std::filesystem::path> config = given.path("--config");
-  prismesh::Result<prismesh::drivers::settings::StationSettings> settings = prismesh::drivers::settings::read_settings(config);
-  if (!settings && config) {
-    std::fprintf(stderr, "%s\n", settings.error().text().c_str());
-    return 1;
-  }
-  // An error in a device's settings must not prevent opening a deck.
-  if (!settings) {
-    prismesh::logging::warn("the settings are left aside: {}", settings.error().text());
-    settings = prismesh::drivers::settings::StationSettings{};
-  }
-  prismesh::modeld::DaemonOptions options;
-  options.runtime_directory = prismesh::ipc::runtime_directory(given.path("--runtime-dir"));
-  options.state_directory = prismesh::modeld::state_directory(given.path("--state-dir"));
-  options.history_bytes = static_cast<std::size_t>(settings->document.history_mb) << 20;
-  options.hang_limit = std::chrono::seconds(settings->document.hang_s);
-  prismesh::Result<prismesh::modeld::Daemon> daemon = prismesh::modeld::Daemon::start(options);
-  if (!daemon) {
-    std::fprintf(stderr, "%s\n", daemon.error().text().c_str());
-    return 1;
-  }
-  prismesh::logging::info("listening in {}, journals in {}", options.runtime_directory.string(), options.state_directory.string());
-  daemon->run();
-  prismesh::logging::info("ended");
-  return 0;
+  const auto serve = [](const prismesh::ProgramOptions& given) -> prismesh::Result<int> {
+    const std::optional<std::filesystem::path> config = given.path("--config");
+    prismesh::Result<prismesh::drivers::settings::StationSettings> settings = prismesh::drivers::settings::read_settings(config);
+    if (!settings && config) return prismesh::fail(settings.error());
+    // An error in a device's settings must not prevent opening a deck.
+    if (!settings) {
+      prismesh::logging::warn("the settings are left aside: {}", settings.error().text());
+      settings = prismesh::drivers::settings::StationSettings{};
+    }
+    prismesh::modeld::DaemonOptions options;
+    options.runtime_directory = prismesh::ipc::runtime_directory(given.path("--runtime-dir"));
+    options.state_directory = prismesh::modeld::state_directory(given.path("--state-dir"));
+    options.history_bytes = static_cast<std::size_t>(settings->document.history_mb) << 20;
+    options.hang_limit = std::chrono::seconds(settings->document.hang_s);
+    prismesh::Result<prismesh::modeld::Daemon> daemon = prismesh::modeld::Daemon::start(options);
+    if (!daemon) return prismesh::fail(daemon.error());
+    prismesh::logging::info("listening in {}, journals in {}", options.runtime_directory.string(), options.state_directory.string());
+    daemon->run();
+    return 0;
+  };
+  return prismesh::daemon::run({"prismesh-modeld", kUsage, {"--runtime-dir", "--state-dir", "--config"}, serve}, argc, argv);
 }

@@ -8,7 +8,7 @@
 #include <mutex>
 #include <thread>
 
-#include "daemon/modeld/watchdog.h"
+#include "daemon/common/watchdog.h"
 
 namespace prismesh::modeld {
 
@@ -24,7 +24,7 @@ class Worker {
   /// Whether the job under way should stop.
   bool stopping() const { return stopping_; }
   /// Beats are expected while a job is under way; jobs give them by `show_progress`.
-  const Heartbeat& heartbeat() const { return heartbeat_; }
+  const daemon::Heartbeat& heartbeat() const { return heartbeat_; }
   void show_progress() { heartbeat_.beat(); }
 
  private:
@@ -34,7 +34,7 @@ class Worker {
   std::condition_variable wake_;
   std::deque<std::function<void()>> jobs_;
   std::atomic<bool> stopping_ = false;
-  Heartbeat heartbeat_;
+  daemon::Heartbeat heartbeat_;
   std::thread thread_;
 };
 

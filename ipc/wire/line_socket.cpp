@@ -9,6 +9,8 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include "ipc/wire/roles.h"
+
 namespace prismesh::ipc {
 
 namespace {
@@ -161,6 +163,9 @@ Result<void> check_server(int socket, const std::filesystem::path& path) {
   if (::getsockopt(socket, SOL_SOCKET, SO_PEERCRED, &peer, &size) != 0)
     return fail(path.string(), std::string("can't tell who listens there: ") + std::strerror(errno));
   if (peer.uid == ::geteuid() || peer.uid == 0) return {};
+  const Result<RoleTable> roles = read_roles();
+  if (!roles) return fail(roles.error());
+  if (roles->of(peer.uid).has(Role::serve)) return {};
   return fail(path.string(), "another user (" + std::to_string(peer.uid) + ", process " + std::to_string(peer.pid) +
                                  ") listens there, not a daemon of yours");
 }

@@ -13,12 +13,13 @@
 
 namespace prismesh::ipc {
 
-Result<void> make_private_folder(const std::filesystem::path& path) {
+Result<void> make_private_folder(const std::filesystem::path& path, bool others_enter) {
+  const mode_t mode = others_enter ? 0711 : 0700;
   // A slash at the end would follow a link.
   const std::filesystem::path folder = path.has_filename() ? path : path.parent_path();
   if (const Result<void> made = make_folders(folder_of(folder)); !made)
     return fail(folder.string(), "can't be made: " + made.error().text());
-  if (::mkdir(folder.c_str(), 0700) == 0) {
+  if (::mkdir(folder.c_str(), mode) == 0) {
     if (Result<void> flushed = flush_folder(folder_of(folder), folder); !flushed) return flushed;
   } else if (errno != EEXIST) {
     return fail(folder.string(), std::string("can't be made: ") + std::strerror(errno));
@@ -28,8 +29,8 @@ Result<void> make_private_folder(const std::filesystem::path& path) {
   if (!S_ISDIR(status.st_mode)) return fail(folder.string(), "is no folder");
   if (status.st_uid != ::geteuid()) return fail(folder.string(), "belongs to another user; name a folder of your own");
   if ((status.st_mode & 0022) != 0) return fail(folder.string(), "others may write to it; make it private (chmod 700) or name another");
-  if ((status.st_mode & 0077) != 0 && ::chmod(folder.c_str(), 0700) != 0)
-    return fail(folder.string(), std::string("others may look into it, and it can't be made private: ") + std::strerror(errno));
+  if ((status.st_mode & 0777) != mode && ::chmod(folder.c_str(), mode) != 0)
+    return fail(folder.string(), std::string("its rights can't be set: ") + std::strerror(errno));
   return {};
 }
 

@@ -8,6 +8,7 @@
 #include <new>
 #include <utility>
 
+#include <fcntl.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
@@ -30,7 +31,7 @@ using asio::posix::stream_descriptor;
 using boost::system::error_code;
 using Time = std::chrono::steady_clock;
 
-Result<Descriptor> bind_socket(const std::filesystem::path& path) {
+Result<Descriptor> bind_socket(const std::filesystem::path& path, bool for_others) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   if (path.native().size() >= sizeof address.sun_path)
@@ -40,17 +41,17 @@ Result<Descriptor> bind_socket(const std::filesystem::path& path) {
   if (!socket) return fail(path.string(), std::string("no socket: ") + std::strerror(errno));
   // The folder's lock is ours, so a socket that lies there has no listener.
   ::unlink(path.c_str());
-  if (::bind(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 || ::chmod(path.c_str(), 0600) != 0 ||
-      ::listen(socket.get(), 16) != 0)
+  if (::bind(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 ||
+      ::chmod(path.c_str(), for_others ? 0666 : 0600) != 0 || ::listen(socket.get(), 16) != 0)
     return fail(path.string(), std::string("can't listen there: ") + std::strerror(errno));
   return socket;
 }
 
-bool may_connect(int socket) {
+Roles roles_of(int socket, const RoleTable& table) {
   ucred peer{};
   socklen_t size = sizeof peer;
-  if (::getsockopt(socket, SOL_SOCKET, SO_PEERCRED, &peer, &size) != 0) return false;
-  return peer.uid == ::geteuid() || peer.uid == 0;
+  if (::getsockopt(socket, SOL_SOCKET, SO_PEERCRED, &peer, &size) != 0) return {};
+  return table.of(peer.uid);
 }
 
 /// Asio waits on a descriptor that somebody else owns.
@@ -68,11 +69,12 @@ class Watched {
 };
 
 struct ServedClient {
-  ServedClient(asio::io_context& loop, Descriptor socket, std::size_t line_bytes)
-      : lines(std::move(socket), {line_bytes, 0}), watched(loop, lines.descriptor()) {}
+  ServedClient(asio::io_context& loop, Descriptor socket, std::size_t line_bytes, const Roles& of_user)
+      : lines(std::move(socket), {line_bytes, 0}), watched(loop, lines.descriptor()), roles(of_user) {}
 
   LineSocket lines;
   Watched watched;
+  Roles roles;
   bool closed = false;
   bool writing = false;
   bool welcomed = false;
@@ -84,10 +86,11 @@ struct ServedClient {
 }  // namespace
 
 struct Server::Impl {
-  Impl(std::filesystem::path where, ServerHandler& to, const ServerLimits& bounds, Descriptor folder_lock, Descriptor socket)
+  Impl(std::filesystem::path where, ServerHandler& to, const ServerLimits& bounds, RoleTable who, Descriptor folder_lock, Descriptor socket)
       : path(std::move(where)),
         handler(to),
         limits(bounds),
+        roles(std::move(who)),
         lock(std::move(folder_lock)),
         listening(std::move(socket)),
         watched(loop, listening.get()),
@@ -98,7 +101,8 @@ struct Server::Impl {
   std::filesystem::path path;
   ServerHandler& handler;
   ServerLimits limits;
-  Descriptor lock;
+  RoleTable roles;
+  Descriptor lock;  ///< none: another process made the socket
   Descriptor listening;
   asio::io_context loop{1};
   Watched watched;
@@ -137,10 +141,11 @@ struct Server::Impl {
     for (;;) {
       Descriptor socket(::accept4(listening.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
       if (!socket) return errno != EMFILE && errno != ENFILE && errno != ENOMEM && errno != ENOBUFS;
-      if (!may_connect(socket.get())) continue;
+      const Roles roles_of_client = roles_of(socket.get(), roles);
+      if (roles_of_client.none()) continue;
       if (connections.size() >= limits.clients) close_oldest_silent();
       const ClientId client = next_client++;
-      const auto served = std::make_shared<ServedClient>(loop, std::move(socket), limits.line_bytes);
+      const auto served = std::make_shared<ServedClient>(loop, std::move(socket), limits.line_bytes, roles_of_client);
       served->surplus = connections.size() >= limits.clients;
       connections.emplace(client, served);
       handler.connected(client);
@@ -244,14 +249,28 @@ struct Server::Impl {
   }
 };
 
-Result<Server> Server::listen(const std::filesystem::path& socket, ServerHandler& handler, const ServerLimits& limits) {
-  if (Result<void> made = make_private_folder(socket.parent_path()); !made) return fail(std::move(made.error()));
+Result<Server> Server::listen(const std::filesystem::path& socket, ServerHandler& handler, const ServerLimits& limits,
+                              const RoleTable& roles) {
+  const bool for_others = roles.has_others();
+  if (Result<void> made = make_private_folder(socket.parent_path(), for_others); !made) return fail(std::move(made.error()));
   Result<Descriptor> lock = lock_folder(socket.parent_path(), socket.filename().string() + ".lock", "a daemon");
   if (!lock) return fail(std::move(lock.error()));
-  Result<Descriptor> listening = bind_socket(socket);
+  Result<Descriptor> listening = bind_socket(socket, for_others);
   if (!listening) return fail(std::move(listening.error()));
+  return start(std::move(*listening), std::move(*lock), socket, handler, limits, roles);
+}
+
+Result<Server> Server::serve(Descriptor listening, const std::filesystem::path& socket, ServerHandler& handler, const ServerLimits& limits,
+                             const RoleTable& roles) {
+  if (::fcntl(listening.get(), F_SETFL, O_NONBLOCK) != 0 || ::fcntl(listening.get(), F_SETFD, FD_CLOEXEC) != 0)
+    return fail(socket.string(), std::string("can't be served: ") + std::strerror(errno));
+  return start(std::move(listening), Descriptor(), socket, handler, limits, roles);
+}
+
+Result<Server> Server::start(Descriptor listening, Descriptor lock, const std::filesystem::path& socket, ServerHandler& handler,
+                             const ServerLimits& limits, const RoleTable& roles) {
   try {
-    auto impl = std::make_unique<Impl>(socket, handler, limits, std::move(*lock), std::move(*listening));
+    auto impl = std::make_unique<Impl>(socket, handler, limits, roles, std::move(lock), std::move(listening));
     impl->start();
     return Server(std::move(impl));
   } catch (const boost::system::system_error& problem) {
@@ -267,7 +286,12 @@ Server& Server::operator=(Server&&) noexcept = default;
 Server::~Server() {
   if (!impl_) return;
   for (const auto& [client, connection] : impl_->connections) (void)connection->lines.flush();
-  ::unlink(impl_->path.c_str());
+  if (impl_->lock) ::unlink(impl_->path.c_str());
+}
+
+Roles Server::roles(ClientId client) const {
+  const std::shared_ptr<ServedClient> connection = impl_->find(client);
+  return connection ? connection->roles : Roles();
 }
 
 void Server::run() {

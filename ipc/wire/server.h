@@ -14,6 +14,7 @@
 
 #include "base/error.h"
 #include "ipc/wire/descriptor.h"
+#include "ipc/wire/roles.h"
 
 namespace prismesh::ipc {
 
@@ -38,9 +39,14 @@ class ServerHandler {
 
 class Server {
  public:
-  /// Makes the folder if it is missing (0700), takes its lock, replaces a stale socket. Errors: another daemon holds the folder (its
-  /// process named), the folder belongs to somebody else or others may write to it, the path is too long for a socket.
-  static Result<Server> listen(const std::filesystem::path& socket, ServerHandler& handler, const ServerLimits& limits = {});
+  /// Makes the folder if it is missing, takes its lock, replaces a stale socket. Users without a role can't connect; if others than the own
+  /// user and root have one, they may enter the folder (0711), else not (0700). Errors: another daemon holds the folder (its process
+  /// named), the folder belongs to somebody else or others may write to it, the path is too long for a socket.
+  static Result<Server> listen(const std::filesystem::path& socket, ServerHandler& handler, const ServerLimits& limits = {},
+                               const RoleTable& roles = {});
+  /// Serves a socket that another process made and listens at; it stays there when the server ends. Errors: it can't be served.
+  static Result<Server> serve(Descriptor listening, const std::filesystem::path& socket, ServerHandler& handler,
+                              const ServerLimits& limits = {}, const RoleTable& roles = {});
   Server(Server&&) noexcept;
   Server& operator=(Server&&) noexcept;
   ~Server();
@@ -54,6 +60,8 @@ class Server {
   void every(std::chrono::nanoseconds period, std::function<void()> work);
 
   void send(ClientId client, std::string line, std::vector<Descriptor> descriptors = {});
+  /// Of the client's user, when it connected.
+  Roles roles(ClientId client) const;
   /// Tells the server that the daemon has welcomed the client.
   void welcome(ClientId client);
   /// A sentence why the client can't be welcomed: too many are connected. Empty if it can.
@@ -63,6 +71,8 @@ class Server {
 
  private:
   struct Impl;
+  static Result<Server> start(Descriptor listening, Descriptor lock, const std::filesystem::path& socket, ServerHandler& handler,
+                              const ServerLimits& limits, const RoleTable& roles);
   explicit Server(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
@@ -72,7 +82,8 @@ std::optional<std::string> protocol_refusal(int ours, int theirs, const std::str
 
 /// Takes an exclusive lock on a folder, which ends with the process. Errors: another process holds it (named).
 Result<Descriptor> lock_folder(const std::filesystem::path& folder, const std::string& file, const std::string& whose);
-/// Makes a folder, if it is missing, that no other user may enter or change. Errors: an existing one that others may.
-Result<void> make_private_folder(const std::filesystem::path& folder);
+/// Makes a folder, if it is missing, that no other user may change. `others_enter`: they may reach what they know the name of; else not.
+/// Errors: an existing one that others may change.
+Result<void> make_private_folder(const std::filesystem::path& folder, bool others_enter = false);
 
 }  // namespace prismesh::ipc

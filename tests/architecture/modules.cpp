@@ -48,8 +48,9 @@ const std::vector<Module>& modules() {
       {"ipc/device", {"ipc/wire", "drivers/prism_servo"}},
       {"ipc/model", {"ipc/wire", "mesh/document"}},
 
-      {"daemon/modeld", {"ipc/model", "drivers/settings"}},
-      {"daemon/deviced", {"ipc/device", "drivers/eye_tracker/configured", "drivers/prism_servo/dynamixel"}},
+      {"daemon/common", {"ipc/wire"}},
+      {"daemon/modeld", {"ipc/model", "daemon/common", "drivers/settings"}},
+      {"daemon/deviced", {"ipc/device", "daemon/common", "drivers/eye_tracker/configured", "drivers/prism_servo/dynamixel"}},
 
       {"kiosk/display", {"drivers/display"}},
       {"kiosk/stereo", {"ipc/device", "ipc/model"}},

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "ipc/device/messages_json.h"
+#include "ipc/device/roles.h"
 
 namespace prismesh::ipc {
 namespace {
@@ -94,6 +95,17 @@ TEST(DeviceMessages, broken_lines_are_refused_in_words) {
       EXPECT_FALSE(request.error().message.empty());
     }
   }
+}
+
+TEST(RolesOfDeviceRequests, are_these) {
+  EXPECT_EQ(role_for(DeviceHello{}), Role::watch);
+  EXPECT_EQ(role_for(GetDevices{}), Role::watch);
+  EXPECT_EQ(role_for(PictureShown{}), Role::devices);
+  EXPECT_EQ(role_for(HoldMask{}), Role::devices);
+  EXPECT_EQ(role_for(ReleaseMask{}), Role::devices);
+  EXPECT_EQ(role_for(Rearm{}), Role::devices);
+  EXPECT_EQ(role_for(Reload{}), Role::devices);
+  EXPECT_EQ(std::variant_size_v<DeviceRequest>, 7U) << "each is in this test";
 }
 
 }  // namespace

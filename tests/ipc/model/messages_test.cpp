@@ -1,8 +1,10 @@
 #include <random>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "ipc/model/messages_json.h"
+#include "ipc/model/roles.h"
 #include "ipc/wire/failure.h"
 
 namespace prismesh::ipc {
@@ -181,6 +183,44 @@ TEST(Messages, broken_lines_are_refused_in_words) {
       EXPECT_FALSE(request.error().message.empty());
     }
   }
+}
+
+/// The kinds of requests for which a user with one role is enough.
+template <class AnyRequest, std::size_t I = 0>
+void requests_of(Role role, std::vector<std::size_t>& found) {
+  if constexpr (I < std::variant_size_v<AnyRequest>) {
+    if (Roles{role}.has(role_for(AnyRequest(std::in_place_index<I>)))) found.push_back(I);
+    requests_of<AnyRequest, I + 1>(role, found);
+  }
+}
+template <class Each>
+std::size_t place_of() {
+  return Request(std::in_place_type<Each>).index();
+}
+
+TEST(RolesOfRequests, are_these) {
+  const std::vector<std::size_t> looks{place_of<Hello>(),    place_of<Count>(),    place_of<GetQuality>(),  place_of<FindShells>(),
+                                       place_of<GetField>(), place_of<GetState>(), place_of<GetSnapshot>(), place_of<ReturnSnapshot>()};
+  std::vector<std::size_t> watch, edit, devices, offer, serve;
+  requests_of<Request>(Role::watch, watch);
+  requests_of<Request>(Role::edit, edit);
+  requests_of<Request>(Role::devices, devices);
+  requests_of<Request>(Role::offer, offer);
+  requests_of<Request>(Role::serve, serve);
+  EXPECT_THAT(watch, testing::UnorderedElementsAreArray(looks));
+  EXPECT_EQ(devices, watch) << "of the document, a user of devices only looks";
+  EXPECT_EQ(edit.size(), std::variant_size_v<Request>) << "all";
+  EXPECT_TRUE(offer.empty());
+  EXPECT_TRUE(serve.empty());
+}
+
+TEST(RolesOfRequests, a_field_against_another_deck_needs_edit) {
+  GetField field;
+  EXPECT_EQ(role_for(field), Role::watch);
+  field.against = "surface";
+  EXPECT_EQ(role_for(field), Role::watch);
+  field.against = "/home/other/secret.k";
+  EXPECT_EQ(role_for(field), Role::edit) << "the daemon would read it with its own rights";
 }
 
 }  // namespace

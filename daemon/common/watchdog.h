@@ -12,7 +12,7 @@
 #include <thread>
 #include <vector>
 
-namespace prismesh::modeld {
+namespace prismesh::daemon {
 
 /// Heartbeats of one thread. May be read from any thread.
 class Heartbeat {
@@ -69,4 +69,4 @@ class Watchdog {
   std::thread thread_;
 };
 
-}  // namespace prismesh::modeld
+}  // namespace prismesh::daemon

@@ -1,8 +1,8 @@
-#include "daemon/modeld/watchdog.h"
+#include "daemon/common/watchdog.h"
 
 #include <utility>
 
-namespace prismesh::modeld {
+namespace prismesh::daemon {
 
 bool HeartbeatMonitor::is_hung() {
   const std::uint64_t count = heartbeat_.count();
@@ -31,4 +31,4 @@ void Watchdog::watch() {
       if (each.is_hung()) return on_hang_(each.fault());
 }
 
-}  // namespace prismesh::modeld
+}  // namespace prismesh::daemon

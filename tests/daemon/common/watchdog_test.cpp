@@ -1,10 +1,10 @@
-#include "daemon/modeld/watchdog.h"
+#include "daemon/common/watchdog.h"
 
 #include <future>
 
 #include <gtest/gtest.h>
 
-namespace prismesh::modeld {
+namespace prismesh::daemon {
 namespace {
 
 using namespace std::chrono_literals;
@@ -48,4 +48,4 @@ TEST(Watchdog, reports_once_which_heartbeat_is_missing) {
 }
 
 }  // namespace
-}  // namespace prismesh::modeld
+}  // namespace prismesh::daemon
