@@ -13,6 +13,7 @@ namespace {
 constexpr double kMinShape = 0.3;  ///< sine of the smallest angle of two triangles that count as a quad
 constexpr double kEqual = 1e-9;
 constexpr std::uint32_t kNotAsked = 0xffffffffu, kNone = 0xfffffffeu;  ///< of Cells::partner_
+constexpr std::uint8_t kUnknown = 0, kFlat = 1, kBends = 2;            ///< of Cells::flat_
 
 Vec3 centre_of(const Model& model, const Cell& cell) {
   Vec3 sum = Vec3::Zero();
@@ -54,7 +55,10 @@ bool has_node(const ShellNodes& of, NodeIndex node) {
 }  // namespace
 
 Cells::Cells(const Model& model, OutOfSight out_of_sight)
-    : model_(model), out_of_sight_(out_of_sight), partner_(model.shell_count(), kNotAsked) {}
+    : model_(model),
+      out_of_sight_(out_of_sight),
+      partner_(model.shell_count(), kNotAsked),
+      flat_(model.adjacency->edge_count(), kUnknown) {}
 
 std::optional<Cell> Cells::of(ShellIndex shell) {
   const ShellNodes& nodes = model_.shell(shell);
@@ -65,9 +69,13 @@ std::optional<Cell> Cells::of(ShellIndex shell) {
 }
 
 ShellIndex Cells::only_neighbour(ShellIndex shell, Edge edge) const {
+  if (edge.low == edge.high) return {};
+  return only_neighbour(shell, model_.adjacency->find_edge(edge.low, edge.high));
+}
+
+ShellIndex Cells::only_neighbour(ShellIndex shell, EdgeIndex edge) const {
   ShellIndex found;
-  if (edge.low == edge.high) return found;
-  for (const ShellIndex other : model_.adjacency->shells_of(model_.adjacency->find_edge(edge.low, edge.high))) {
+  for (const ShellIndex other : model_.adjacency->shells_of(edge)) {
     if (other == shell || !in_sight(model_, other, out_of_sight_)) continue;
     if (found.valid()) return {};
     found = other;
@@ -75,10 +83,16 @@ ShellIndex Cells::only_neighbour(ShellIndex shell, Edge edge) const {
   return found;
 }
 
+/// The one of a cell's shells that has the edge.
+ShellIndex Cells::shell_at(const Cell& cell, Edge edge) const {
+  if (cell.one == cell.other) return cell.one;
+  const ShellNodes& nodes = model_.shell(cell.one);
+  return has_node(nodes, edge.low) && has_node(nodes, edge.high) ? cell.one : cell.other;
+}
+
 ShellIndex Cells::beyond(const Cell& cell, std::size_t position) const {
   const Edge edge = cell.edge(position);
-  const ShellNodes& nodes = model_.shell(cell.one);
-  return only_neighbour(has_node(nodes, edge.low) && has_node(nodes, edge.high) ? cell.one : cell.other, edge);
+  return only_neighbour(shell_at(cell, edge), edge);
 }
 
 Walk Cells::walk(Cell cell, std::size_t position, std::size_t max_edges) {
@@ -133,11 +147,20 @@ Walk::Crossing Cells::crossing(Edge edge, const Vec3& from, const Vec3& into, co
 }
 
 bool Cells::is_flat_at(const Cell& cell, std::size_t position, double radians) {
-  const ShellIndex next = beyond(cell, position);
+  const Edge edge = cell.edge(position);
+  if (edge.low == edge.high) return true;
+  const EdgeIndex index = model_.adjacency->find_edge(edge.low, edge.high);
+  // Both sides of an edge ask, and bend by the same angle.
+  std::uint8_t& known = flat_[index.value];
+  if (known == kUnknown) known = bends_little(cell, edge, index, radians) ? kFlat : kBends;
+  return known == kFlat;
+}
+
+bool Cells::bends_little(const Cell& cell, Edge edge, EdgeIndex index, double radians) {
+  const ShellIndex next = only_neighbour(shell_at(cell, edge), index);
   if (!next.valid()) return true;
   const std::optional<Cell> other = of(next);
-  const Sides sides =
-      sides_at(model_, cell.edge(position), centre_of(model_, cell), other ? centre_of(model_, *other) : centre_of(model_, next));
+  const Sides sides = sides_at(model_, edge, centre_of(model_, cell), other ? centre_of(model_, *other) : centre_of(model_, next));
   const double straight = -sides.from.dot(sides.into);
   // The tangent of so small an angle is the angle.
   return straight > 0 && sides.from.cross(sides.into).squaredNorm() <= radians * radians * straight * straight;

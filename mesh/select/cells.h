@@ -55,12 +55,16 @@ class Cells {
   ShellIndex only_neighbour(ShellIndex shell, Edge edge) const;
   /// The same beyond a cell's edge.
   ShellIndex beyond(const Cell& cell, std::size_t position) const;
-  /// Whether the sheet bends at a cell's edge by a small angle at most, or ends there. Cheaper than a walk.
+  /// Whether the sheet bends at a cell's edge by a small angle at most, or ends there. Cheaper than a walk. The answer is
+  /// remembered for the edge, so `radians` must always be the same.
   bool is_flat_at(const Cell& cell, std::size_t position, double radians);
   /// Walks from a cell over its edge `position` and opposite edges, over max_edges at most (no more than Walk holds).
   Walk walk(Cell cell, std::size_t position, std::size_t max_edges);
 
  private:
+  ShellIndex only_neighbour(ShellIndex shell, EdgeIndex edge) const;
+  ShellIndex shell_at(const Cell& cell, Edge edge) const;
+  bool bends_little(const Cell& cell, Edge edge, EdgeIndex index, double radians);
   ShellIndex best_partner(ShellIndex shell) const;
   ShellIndex partner_of(ShellIndex shell);
   std::array<NodeIndex, 4> quad_of(ShellIndex shell, ShellIndex partner) const;
@@ -69,6 +73,7 @@ class Cells {
   const Model& model_;
   OutOfSight out_of_sight_;
   std::vector<std::uint32_t> partner_;  ///< by shell
+  std::vector<std::uint8_t> flat_;      ///< by edge: what is_flat_at found
 };
 
 }  // namespace prismesh::mesh::select

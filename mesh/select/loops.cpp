@@ -6,7 +6,6 @@
 #include <limits>
 #include <optional>
 #include <queue>
-#include <unordered_map>
 #include <unordered_set>
 #include <utility>
 #include <vector>
@@ -43,6 +42,31 @@ class Sheet {
       }
     }
     return edges;
+  }
+
+  /// Whether each edge at a node surely has two shells or more, seen from the shells alone: cheaper than asking for the edges.
+  bool is_inner(NodeIndex node) const {
+    constexpr std::size_t kMaxEdges = 16;
+    std::array<NodeIndex, kMaxEdges> once;  // neighbours found in one shell so far
+    std::array<NodeIndex, kMaxEdges> more;
+    std::size_t once_count = 0, more_count = 0;
+    for (const ShellIndex shell : adjacency_.shells_of(node)) {
+      const std::array<NodeIndex, 2> both = neighbours(shell, node);
+      if (both[0] == both[1]) return false;
+      for (const NodeIndex other : both) {
+        if (std::find(more.begin(), more.begin() + more_count, other) != more.begin() + more_count) continue;
+        NodeIndex* const found = std::find(once.begin(), once.begin() + once_count, other);
+        if (found == once.begin() + once_count) {
+          if (once_count == kMaxEdges) return false;
+          once[once_count++] = other;
+        } else {
+          if (more_count == kMaxEdges) return false;
+          more[more_count++] = other;
+          *found = once[--once_count];
+        }
+      }
+    }
+    return once_count == 0;
   }
 
   /// The next free edge of the loop at `to`, around the shells there.
@@ -117,11 +141,11 @@ double distance2_to_segment(const Vec3& point, const Vec3& a, const Vec3& b) {
 std::optional<FreeEdge> nearest_free_edge(const Model& model, const Sheet& sheet, const ShellSet& start, const Vec3& place) {
   using Reached = std::pair<double, NodeIndex>;
   std::priority_queue<Reached, std::vector<Reached>, std::greater<>> open;
-  std::unordered_map<std::uint32_t, double> distance;  // only looked up
+  // An entry a node: far quicker than a map where the way to a free edge is long, and a few ms at a million nodes where it is short.
+  std::vector<double> distance(model.node_count(), std::numeric_limits<double>::infinity());
   const auto reach = [&](NodeIndex node, double to) {
-    const auto [known, is_new] = distance.try_emplace(node.value, to);
-    if (!is_new && known->second <= to) return;
-    known->second = to;
+    if (distance[node.value] <= to) return;
+    distance[node.value] = to;
     open.emplace(to, node);
   };
   for (const ShellIndex shell : start)
@@ -130,13 +154,15 @@ std::optional<FreeEdge> nearest_free_edge(const Model& model, const Sheet& sheet
     const auto [to, node] = open.top();
     open.pop();
     if (to > distance[node.value]) continue;
-    std::optional<FreeEdge> best;
-    double min_distance2 = std::numeric_limits<double>::infinity();
-    for (const FreeEdge& edge : sheet.free_edges_at(node)) {
-      const double distance2 = distance2_to_segment(place, model.position(edge.from), model.position(edge.to));
-      if (distance2 < min_distance2) min_distance2 = distance2, best = edge;
+    if (!sheet.is_inner(node)) {
+      std::optional<FreeEdge> best;
+      double min_distance2 = std::numeric_limits<double>::infinity();
+      for (const FreeEdge& edge : sheet.free_edges_at(node)) {
+        const double distance2 = distance2_to_segment(place, model.position(edge.from), model.position(edge.to));
+        if (distance2 < min_distance2) min_distance2 = distance2, best = edge;
+      }
+      if (best) return best;
     }
-    if (best) return best;
     for (const ShellIndex shell : model.adjacency->shells_of(node)) {
       if (!sheet.has(shell)) continue;
       for (const NodeIndex other : model.shell(shell).node)

@@ -14,89 +14,99 @@ constexpr std::uint32_t kNowhere = 0xffffffffu;
 constexpr double kMinGain = 1e-9;           ///< share of its distance that a finished node must gain to be queued again
 constexpr std::uint8_t kMaxRequeues = 200;  ///< of one node; bounds the work, far above what meshes need
 
-/// A heap of nodes by distance, the nearest on top; of equals the lower number, so that the order never depends on history.
+/// What is known of a node. One struct, because marching asks for all of it at once, in an order that the cache doesn't know.
+struct NodeState {
+  double distance = kUnreached;
+  std::uint32_t centre = kNowhere;  ///< node that the wave spreads from in circles: a source, or the last turn of the path
+  std::uint32_t source = kNowhere;
+  std::uint32_t place = kNowhere;  ///< in the heap
+  bool done = false;
+  std::uint8_t requeues = 0;  ///< how often the node was queued again
+};
+
+/// A heap of nodes by distance, the nearest on top; of equals the lower number, so that the order never depends on history. An entry
+/// carries its distance, so that comparing needs no look at the nodes.
 class NearestFirst {
  public:
-  explicit NearestFirst(const std::vector<double>& distance) : distance_(distance), place_(distance.size(), kNowhere) {}
+  explicit NearestFirst(std::vector<NodeState>& states) : states_(states) {}
 
   bool empty() const { return heap_.empty(); }
 
   /// Adds a node, or moves it up after its distance decreased.
   void raise(std::uint32_t node) {
-    if (place_[node] == kNowhere) {
-      place_[node] = static_cast<std::uint32_t>(heap_.size());
-      heap_.push_back(node);
+    NodeState& state = states_[node];
+    std::size_t at = state.place;
+    if (at == kNowhere) {
+      at = heap_.size();
+      heap_.emplace_back();
     }
-    std::size_t at = place_[node];
+    const Entry entry{state.distance, node};
     while (at > 0) {
       const std::size_t parent = (at - 1) / 2;
-      if (!before(node, heap_[parent])) break;
+      if (!before(entry, heap_[parent])) break;
       settle(heap_[parent], at);
       at = parent;
     }
-    settle(node, at);
+    settle(entry, at);
   }
 
   std::uint32_t pop() {
-    const std::uint32_t top = heap_.front();
-    const std::uint32_t last = heap_.back();
+    const std::uint32_t top = heap_.front().node;
+    const Entry last = heap_.back();
     heap_.pop_back();
-    place_[top] = kNowhere;
+    states_[top].place = kNowhere;
     if (!heap_.empty()) sink(last);
     return top;
   }
 
  private:
-  bool before(std::uint32_t a, std::uint32_t b) const { return distance_[a] < distance_[b] || (distance_[a] == distance_[b] && a < b); }
-  void settle(std::uint32_t node, std::size_t at) {
-    heap_[at] = node;
-    place_[node] = static_cast<std::uint32_t>(at);
+  struct Entry {
+    double distance = 0;
+    std::uint32_t node = 0;
+  };
+
+  static bool before(const Entry& a, const Entry& b) { return a.distance < b.distance || (a.distance == b.distance && a.node < b.node); }
+  void settle(const Entry& entry, std::size_t at) {
+    heap_[at] = entry;
+    states_[entry.node].place = static_cast<std::uint32_t>(at);
   }
-  void sink(std::uint32_t node) {
+  void sink(const Entry& entry) {
     std::size_t at = 0;
     for (std::size_t child = 1; child < heap_.size(); child = 2 * at + 1) {
       if (child + 1 < heap_.size() && before(heap_[child + 1], heap_[child])) ++child;
-      if (!before(heap_[child], node)) break;
+      if (!before(heap_[child], entry)) break;
       settle(heap_[child], at);
       at = child;
     }
-    settle(node, at);
+    settle(entry, at);
   }
 
-  const std::vector<double>& distance_;
-  std::vector<std::uint32_t> heap_;
-  std::vector<std::uint32_t> place_;
+  std::vector<NodeState>& states_;
+  std::vector<Entry> heap_;
 };
 
 class March {
  public:
-  explicit March(const Patch& patch)
-      : patch_(patch),
-        distance_(patch.nodes.size(), kUnreached),
-        centre_(patch.nodes.size(), kNowhere),
-        source_(patch.nodes.size(), kNowhere),
-        done_(patch.nodes.size(), 0),
-        requeues_(patch.nodes.size(), 0),
-        queue_(distance_) {}
+  explicit March(const Patch& patch) : patch_(patch), states_(patch.nodes.size()), queue_(states_) {}
 
   /// `start`: the distance of each source; empty: 0.
   std::vector<double> run(std::span<const std::uint32_t> sources, std::span<const double> start, double radius) {
     for (std::size_t i = 0; i < sources.size(); ++i) {
       const std::uint32_t source = sources[i];
-      if (source >= distance_.size() || centre_[source] != kNowhere) continue;
-      distance_[source] = start.empty() ? 0 : start[i];
-      centre_[source] = source_[source] = source;
+      if (source >= states_.size() || states_[source].centre != kNowhere) continue;
+      states_[source].distance = start.empty() ? 0 : start[i];
+      states_[source].centre = states_[source].source = source;
       queue_.raise(source);
     }
     while (!queue_.empty()) {
       const std::uint32_t node = queue_.pop();
-      if (distance_[node] > radius) break;
-      done_[node] = 1;
+      if (states_[node].distance > radius) break;
+      states_[node].done = true;
       spread_from(node);
     }
-    for (std::size_t i = 0; i < distance_.size(); ++i)
-      if (done_[i] == 0) distance_[i] = kUnreached;
-    return std::move(distance_);
+    std::vector<double> distance(states_.size());
+    for (std::size_t i = 0; i < distance.size(); ++i) distance[i] = states_[i].done ? states_[i].distance : kUnreached;
+    return distance;
   }
 
  private:
@@ -177,17 +187,18 @@ class March {
   }
 
   void go_straight(std::uint32_t from, std::uint32_t to, double length) {
-    offer(to, distance_[from] + length, patch_.bends[from] != 0 ? from : centre_[from], source_[from]);
+    offer(to, states_[from].distance + length, patch_.bends[from] != 0 ? from : states_[from].centre, states_[from].source);
   }
 
   void cross(const Triangle& t) {
-    if (done_[t.a] == 0 || done_[t.b] == 0 || !(t.base > 0)) return;
-    if (done_[t.tip] != 0 && distance_[t.tip] <= std::min(distance_[t.a], distance_[t.b])) return;
+    if (!states_[t.a].done || !states_[t.b].done || !(t.base > 0)) return;
+    if (states_[t.tip].done && states_[t.tip].distance <= std::min(states_[t.a].distance, states_[t.b].distance)) return;
     const double x = (t.a_tip * t.a_tip + t.base * t.base - t.b_tip * t.b_tip) / (2 * t.base);
     const FlatTip tip{x, std::sqrt(std::max(0.0, t.a_tip * t.a_tip - x * x))};
-    const std::uint32_t centre = centre_[t.a];
-    if (centre == centre_[t.b])
-      cross_from_centre(t, tip, {centre, distance_[t.a] - distance_[centre], distance_[t.b] - distance_[centre]});
+    const std::uint32_t centre = states_[t.a].centre;
+    if (centre == states_[t.b].centre)
+      cross_from_centre(t, tip,
+                        {centre, states_[t.a].distance - states_[centre].distance, states_[t.b].distance - states_[centre].distance});
     else
       cross_between_waves(t, tip);
   }
@@ -203,28 +214,29 @@ class March {
     if (crossing < 0 || crossing > t.base * (depth + tip.y)) return false;
     const double dx = tip.x - centre_x;
     const double dy = tip.y + depth;
-    const double distance = distance_[wave.centre] + std::sqrt(dx * dx + dy * dy);
+    const double distance = states_[wave.centre].distance + std::sqrt(dx * dx + dy * dy);
     // no path along the surface is shorter than the straight line
-    if (distance < distance_[t.tip]) offer(t.tip, std::max(distance, straight(wave.centre, t.tip)), wave.centre, source_[t.a]);
+    if (distance < states_[t.tip].distance)
+      offer(t.tip, std::max(distance, straight(wave.centre, t.tip)), wave.centre, states_[t.a].source);
     return true;
   }
 
   /// Distance at a node by the straight line in space from a centre: a lower bound.
   double straight(std::uint32_t centre, std::uint32_t node) const {
-    return distance_[centre] + (patch_.positions[node] - patch_.positions[centre]).norm();
+    return states_[centre].distance + (patch_.positions[node] - patch_.positions[centre]).norm();
   }
 
   /// Between waves of different sources the front counts as straight. Waves of one source with different centres meet behind a turn: the
   /// path to one end of the base passed the turn, the path to the other end, which the earlier centre still sees, didn't.
   void cross_between_waves(const Triangle& t, const FlatTip& tip) {
-    const double slope_x = (distance_[t.b] - distance_[t.a]) / t.base;
+    const double slope_x = (states_[t.b].distance - states_[t.a].distance) / t.base;
     if (!(std::abs(slope_x) < 1)) return;
     const double slope_y = std::sqrt(1 - slope_x * slope_x);
     const double crossing = tip.x * slope_y - tip.y * slope_x;
     const std::uint32_t nearer = crossing < 0.5 * t.base * slope_y ? t.a : t.b;
-    if (source_[t.a] == source_[t.b] && cross_behind_turn(t, tip)) return;
+    if (states_[t.a].source == states_[t.b].source && cross_behind_turn(t, tip)) return;
     if (crossing < 0 || crossing > t.base * slope_y) return;
-    offer(t.tip, distance_[t.a] + tip.x * slope_x + tip.y * slope_y, centre_[nearer], source_[nearer]);
+    offer(t.tip, states_[t.a].distance + tip.x * slope_x + tip.y * slope_y, states_[nearer].centre, states_[nearer].source);
   }
 
   /// Tries the waves of both centres. At an end that a centre doesn't see, the radius of its wave is at least the distance found there, and
@@ -232,36 +244,33 @@ class March {
   bool cross_behind_turn(const Triangle& t, const FlatTip& tip) {
     const auto over = [&](std::uint32_t centre) {
       return cross_from_centre(t, tip,
-                               {centre, std::max(distance_[t.a], straight(centre, t.a)) - distance_[centre],
-                                std::max(distance_[t.b], straight(centre, t.b)) - distance_[centre]});
+                               {centre, std::max(states_[t.a].distance, straight(centre, t.a)) - states_[centre].distance,
+                                std::max(states_[t.b].distance, straight(centre, t.b)) - states_[centre].distance});
     };
-    const bool from_a = over(centre_[t.a]);
-    const bool from_b = over(centre_[t.b]);
+    const bool from_a = over(states_[t.a].centre);
+    const bool from_b = over(states_[t.b].centre);
     return from_a || from_b;
   }
 
   /// Lowers a node's distance. A finished node is queued again if its distance gets lower: where corners are obtuse or the source is near,
   /// the ends of a base may be finished after the tip.
   void offer(std::uint32_t node, double distance, std::uint32_t centre, std::uint32_t source) {
-    if (done_[node] != 0) {
-      if (!(distance < distance_[node] * (1 - kMinGain)) || requeues_[node] == kMaxRequeues) return;
-      ++requeues_[node];
-    } else if (!(distance < distance_[node])) {
+    NodeState& state = states_[node];
+    if (state.done) {
+      if (!(distance < state.distance * (1 - kMinGain)) || state.requeues == kMaxRequeues) return;
+      ++state.requeues;
+    } else if (!(distance < state.distance)) {
       return;
     }
-    done_[node] = 0;
-    distance_[node] = distance;
-    centre_[node] = centre;
-    source_[node] = source;
+    state.done = false;
+    state.distance = distance;
+    state.centre = centre;
+    state.source = source;
     queue_.raise(node);
   }
 
   const Patch& patch_;
-  std::vector<double> distance_;
-  std::vector<std::uint32_t> centre_;  ///< node that the wave spreads from in circles: a source, or the last turn of the path
-  std::vector<std::uint32_t> source_;
-  std::vector<std::uint8_t> done_;
-  std::vector<std::uint8_t> requeues_;  ///< how often each node was queued again
+  std::vector<NodeState> states_;
   NearestFirst queue_;
 };
 

@@ -17,6 +17,7 @@
 #include "mesh/spatial/cut_patch.h"
 #include "mesh/spatial/geodesic.h"
 #include "tests/bench/million_quads.h"
+#include "tests/bench/plain_fast_marching.h"
 #include "tests/support/whole_model.h"
 
 namespace prismesh::mesh {
@@ -104,6 +105,26 @@ void geodesic_of_250_mm(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(spatial::geodesic_distance(patch, source));
 }
 BENCHMARK(geodesic_of_250_mm)->Unit(benchmark::kMillisecond);
+
+/// The whole sheet, from its middle.
+const spatial::Patch& whole_patch() {
+  static const spatial::Patch patch = spatial::cut_patch(whole_sheet(), all_shells(whole_sheet()));
+  return patch;
+}
+constexpr std::uint32_t kMiddle = 500 * kSheetStride + 500;
+
+void geodesic_over_a_million_shells(benchmark::State& state) {
+  const spatial::Patch& patch = whole_patch();
+  const std::vector<std::uint32_t> source{kMiddle};
+  for (auto _ : state) benchmark::DoNotOptimize(spatial::geodesic_distance(patch, source));
+}
+BENCHMARK(geodesic_over_a_million_shells)->Unit(benchmark::kMillisecond);
+
+void plain_fast_marching_over_a_million_shells(benchmark::State& state) {
+  const spatial::Patch& patch = whole_patch();
+  for (auto _ : state) benchmark::DoNotOptimize(bench::plain_fast_marching(patch, kMiddle));
+}
+BENCHMARK(plain_fast_marching_over_a_million_shells)->Unit(benchmark::kMillisecond);
 
 void tree_over_a_million_shells(benchmark::State& state) {
   const Model& model = whole_sheet();
