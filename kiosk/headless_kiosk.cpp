@@ -48,11 +48,14 @@ Result<void> HeadlessKiosk::run() {
     if (now >= station_.eyes.next_look_ns()) {
       station_.look();
       begun = begun || settled() || now - started >= kPatienceNs;
+      if (const auto& model = station_.link.snapshot()) watch_.draws(model->shell_count());
       if (begun && now >= due && taken_ < options_.headless_frames) {
         if (Result<void> shot = shoot(); !shot) return shot;
+        watch_.shown();
         due = now + std::llround(options_.pace_seconds * 1e9);
       }
     }
+    watch_.turn(now, begun && now > due);
     std::this_thread::sleep_for(std::chrono::nanoseconds(kTurnNs));
   }
   return {};

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "kiosk/app_options.h"
+#include "kiosk/picture_watch.h"
 #include "kiosk/render/offscreen.h"
 #include "kiosk/station.h"
 
@@ -44,6 +45,7 @@ class HeadlessKiosk {
   int taken_ = 0;
   std::deque<Shot> shots_;
   std::deque<Measured> measured_;
+  PictureWatch watch_{reports_to_supervisor()};
 };
 
 }  // namespace prismesh::kiosk

@@ -46,8 +46,11 @@ Result<void> WindowedKiosk::run() {
     }
     rest_traced_ = rest_traced_ && events->empty();
     if (Result<void> turned = station_.turn(); !turned) return turned;
+    if (const auto& model = station_.link.snapshot()) watch_.draws(model->shell_count());
     const Result<bool> drawn = beat();
     if (!drawn) return fail(drawn.error());
+    if (*drawn) watch_.shown();
+    watch_.turn(station_.clock.now_ns(), stale());
     rest_traced_ = rest_traced_ && !*drawn;
     if (*drawn || !events->empty()) continue;
     if (!stale() && !std::exchange(rest_traced_, true)) trace_rest();
@@ -210,6 +213,7 @@ std::int64_t WindowedKiosk::patience_ns() const {
   if (!station_.devices.connected()) patience = shorter(patience, kDaemonTriesNs);
   if (stale() || station_.eyes.watches()) patience = shorter(patience, std::max<std::int64_t>(0, station_.eyes.next_look_ns() - now));
   if (station_.screen.gui().wants_keys()) patience = shorter(patience, kCaretBlinkNs);
+  if (const auto report = watch_.next_ns()) patience = shorter(patience, std::max<std::int64_t>(0, *report - now));
   if (shown_moving_ && !gestures_.dragging()) patience = shorter(patience, std::max<std::int64_t>(0, wheel_rest_ns_ - now));
   return patience;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kiosk/display/window.h"
+#include "kiosk/picture_watch.h"
 #include "kiosk/station.h"
 #include "kiosk/tools/gestures.h"
 
@@ -54,6 +55,7 @@ class WindowedKiosk {
   std::uint64_t pictures_ = 0;
   std::uint64_t presses_ = 0, releases_ = 0;  ///< of buttons; a step of the wheel is a press
   bool rest_traced_ = false;                  ///< no event and no picture since
+  PictureWatch watch_{reports_to_supervisor()};
 };
 
 }  // namespace prismesh::kiosk

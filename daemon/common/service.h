@@ -17,7 +17,8 @@
 
 #include "base/error.h"
 #include "base/log.h"
-#include "daemon/common/supervisor.h"
+#include "base/supervisor.h"
+#include "daemon/common/inherited_socket.h"
 #include "ipc/wire/envelope.h"
 #include "ipc/wire/failure.h"
 #include "ipc/wire/server.h"
@@ -51,13 +52,13 @@ class Service : public ipc::ServerHandler {
   /// Serves until SIGTERM, SIGINT, a terminal's SIGHUP or `stop`. Tells systemd that the daemon is ready, ending, and while `is_well` that
   /// it is alive.
   void run(const std::string& status) {
-    if (const auto period = supervised_period())
+    if (const auto period = supervisor::period())
       server_->every(*period, [this] {
-        if (is_well()) tell_alive();
+        if (is_well()) supervisor::tell_alive();
       });
-    tell_ready(status);
+    supervisor::tell_ready(status);
     server_->run();
-    tell_ending();
+    supervisor::tell_ending();
   }
   void stop() { server_->stop(); }
   void post(std::function<void()> work) { server_->post(std::move(work)); }

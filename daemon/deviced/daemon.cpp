@@ -90,21 +90,27 @@ struct Daemon::Impl final : daemon::Service<DeviceProtocol> {
   std::vector<ipc::DeviceInfo> devices;
   std::map<std::string, Reported> reported;  ///< by role
   std::string no_station;                    ///< why no station runs; empty: one does
-  std::unique_ptr<Station> station;          // last: it ends before the page that it writes to
+  std::optional<daemon::HeartbeatMonitor> ticking;
+  std::unique_ptr<Station> station;  // last: it ends before the page that it writes to
 
   // --- the station ---
 
   Result<void> start_station() {
+    ticking.reset();
     station.reset();
     pending_commands.clear();
     Result<std::unique_ptr<Station>> started = Station::start(plan, page, memory_locked, end_stuck);
     if (!started) return fail(std::move(started.error()));
     station = std::move(*started);
+    ticking.emplace("no tick came in time", station->heartbeat(), 1);
     if (!station->refused().empty()) logging::warn("{}", station->refused());
     if (!picture_mono) send_to_loop(SetPictureMono{false});
     if (holder) send_to_loop(SetHold{hold.position_mm});
     return {};
   }
+
+  /// A tick was in time since the last report.
+  bool is_well() override { return !ticking || !ticking->is_hung(); }
 
   void send_to_loop(const LoopCommand& command) {
     // Only the newest command of each kind is kept, so that a client can't fill the memory.

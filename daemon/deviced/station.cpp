@@ -184,4 +184,6 @@ std::vector<ipc::DeviceInfo> Station::poll() {
 
 const std::string& Station::refused() const { return impl_->loop_thread->refused(); }
 
+const daemon::Heartbeat& Station::heartbeat() const { return impl_->loop_thread->heartbeat(); }
+
 }  // namespace prismesh::deviced

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "base/error.h"
+#include "daemon/common/watchdog.h"
 #include "daemon/deviced/device_status.h"
 #include "daemon/deviced/loop.h"
 #include "drivers/display/profile.h"
@@ -51,7 +52,8 @@ class Station {
   bool send(const LoopCommand& command);
   /// Reads the loop's events and returns the status of each device.
   std::vector<ipc::DeviceInfo> poll();
-  const std::string& refused() const;  ///< as LoopThread::refused
+  const daemon::Heartbeat& heartbeat() const;  ///< of the loop
+  const std::string& refused() const;          ///< as LoopThread::refused
 
  private:
   struct Impl;

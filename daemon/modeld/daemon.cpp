@@ -30,6 +30,7 @@ namespace {
 constexpr std::chrono::milliseconds kWatchPeriod{500};
 static_assert(kWatchPeriod.count() * 1'000'000 >= ipc::kHeartbeatPeriodNs);
 constexpr std::chrono::seconds kMaxUnserved{20};
+constexpr int kMaxPeriodsOfAppend = 10;  ///< that an append may take, in periods of the supervisor
 
 struct ModelProtocol {
   using Request = ipc::Request;
@@ -75,6 +76,7 @@ struct Daemon::Impl final : daemon::Service<ModelProtocol>, ClientChannel {
   RequestHandler handler;
   RequestScheduler scheduler;
   daemon::Heartbeat loop_heartbeat;
+  daemon::HeartbeatMonitor append_monitor{"the journal can't be written", handler.appending(), kMaxPeriodsOfAppend};
   std::optional<daemon::Watchdog> watchdog;  // outlives the worker, whose end it watches
   Worker worker;                             // last: it ends before the objects that it works on
 
@@ -110,6 +112,9 @@ struct Daemon::Impl final : daemon::Service<ModelProtocol>, ClientChannel {
     beat();
   }
   void post(std::function<void()> work) override { Service::post(std::move(work)); }
+
+  /// The disk takes the journal. An append that fails is said to the client; one that hangs can only be cut off.
+  bool is_well() override { return !append_monitor.is_hung(); }
 
   void beat() {
     loop_heartbeat.beat();

@@ -208,7 +208,10 @@ Result<EditReport> DocumentKeeper::edit(const Edit& edit, const Progress& progre
   // After the record is written, nothing may fail for lack of memory.
   open.recorded.generations.reserve(open.recorded.generations.size() + 1);
   open.document.generations.reserve(open.document.generations.size() + 1);
-  if (Result<void> appended = open.journal.append(open.recorded, *whole, recorded); !appended) return fail(std::move(appended.error()));
+  appending_->begin();
+  Result<void> appended = open.journal.append(open.recorded, *whole, recorded);
+  appending_->end();
+  if (!appended) return fail(std::move(appended.error()));
   commit(open.recorded, std::move(recorded));
   const std::shared_ptr<const Judging> judging = open.document.current().judging;
   commit(open.document, std::move(*prepared));

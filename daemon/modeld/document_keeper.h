@@ -7,6 +7,7 @@
 
 #include "base/clock.h"
 #include "base/progress.h"
+#include "daemon/common/watchdog.h"
 #include "daemon/modeld/state_folder.h"
 #include "ipc/model/messages.h"
 #include "mesh/deck/open.h"
@@ -58,6 +59,9 @@ class DocumentKeeper {
   bool changed() const;
   /// All fields but `busy`.
   ipc::DocumentState state() const;
+
+  /// Beats are expected while an edit is written to the journal.
+  const daemon::Heartbeat& appending() const { return *appending_; }
 
  private:
   /// A generation of `recorded` and the generation of the document that it is a copy of.
@@ -123,6 +127,7 @@ class DocumentKeeper {
 
   StateFolder folder_;
   std::size_t history_bytes_;
+  std::unique_ptr<daemon::Heartbeat> appending_ = std::make_unique<daemon::Heartbeat>();
   std::optional<OpenDocument> open_;
 };
 

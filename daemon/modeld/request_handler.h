@@ -55,6 +55,9 @@ class RequestHandler {
   Outcome commit_drag();
   Outcome cancel_drag(const std::string& why);
 
+  /// As DocumentKeeper::appending. May be read from any thread.
+  const daemon::Heartbeat& appending() const { return keeper_.appending(); }
+
  private:
   Outcome opened();
   void show(const std::string& made_by, Outcome& outcome);

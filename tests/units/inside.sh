@@ -1,0 +1,101 @@
+#!/bin/bash
+# Inside of the container of started.sh: the units are sound, start, do the work of the demo, and come back when they are killed or hang.
+run=/run/prismesh
+failed=0
+ok() { echo "ok: $*"; }
+bad() {
+  echo "FAILED: $*"
+  failed=1
+}
+check() {
+  local what=$1
+  shift
+  if "$@" >/tmp/said 2>&1; then ok "$what"; else
+    bad "$what"
+    sed 's/^/    /' /tmp/said
+  fi
+}
+now_ms() { echo $(($(date +%s%N) / 1000000)); }
+# until_ms LIMIT COMMAND..: tries until the command succeeds; prints how long that took, or fails after the limit.
+until_ms() {
+  local limit=$1 began
+  began=$(now_ms)
+  shift
+  until "$@" >/tmp/said 2>&1; do
+    [ $(($(now_ms) - began)) -lt "$limit" ] || return 1
+    sleep 0.05
+  done
+  echo $(($(now_ms) - began))
+}
+state() { timeout 5 prismesh session --runtime-dir $run state; }
+is_active() { [ "$(systemctl is-active "$1")" = active ]; }
+main_pid() { systemctl show -P MainPID "$1"; }
+
+# --- the units themselves ---
+services="prismesh-modeld prismesh-deviced prismesh-kiosk"
+check "systemd-analyze verify" bash -c 'said=$(systemd-analyze verify --man=no /usr/lib/systemd/system/prismesh* 2>&1); echo "$said"; [ -z "$(grep prismesh <<<"$said")" ]'
+for service in $services; do
+  limit=15
+  [ $service != prismesh-deviced ] || limit=17
+  check "exposure of $service at most 1.${limit#1}" systemd-analyze security --offline=yes --threshold=$limit /usr/lib/systemd/system/$service.service
+done
+
+# --- starting ---
+systemd-tmpfiles --create /usr/lib/tmpfiles.d/prismesh.conf
+cp /root/sample.k /var/lib/prismesh/models/
+chgrp prismesh /var/lib/prismesh/models/sample.k
+chmod 664 /var/lib/prismesh/models/sample.k
+began=$(now_ms)
+systemctl start --no-block prismesh.target
+took=$(until_ms 20000 bash -c 'for each in prismesh-modeld prismesh-deviced prismesh-kiosk; do [ "$(systemctl is-active $each)" = active ] || exit 1; done') &&
+  ok "the target is up with its first picture after $took ms" || { bad "the target isn't up"; systemctl --no-pager status $services; }
+check "all run as their own users" bash -c '
+  for each in modeld deviced kiosk; do
+    [ "$(ps -o user:20= -p "$(systemctl show -P MainPID prismesh-$each)" | tr -d " ")" = "prismesh-$each" ] || { echo "$each"; exit 1; }
+  done'
+
+# --- the demo's work ---
+session() { timeout 30 prismesh session --runtime-dir $run "$@"; }
+check "a deck is opened" session open /var/lib/prismesh/models/sample.k
+check "a patch is selected" session edit '{"edit":"select","expr":"5000001-5000040"}'
+check "and lifted" session edit '{"edit":"lift","distance":6}'
+check "and repaired" session edit '{"edit":"repair"}'
+check "the devices are there" timeout 5 prismesh devices --runtime-dir $run
+state >/tmp/before
+check "the state names the deck" grep -q sample.k /tmp/before
+
+# --- roles ---
+as() { setpriv --reuid "$1" --regid "$2" --clear-groups "${@:3}"; }
+check "the kiosk's user may edit" as prismesh-kiosk prismesh timeout 5 prismesh session --runtime-dir $run edit '{"edit":"select","expr":"5000001-5000050"}'
+check "and it is undone" session undo
+check "a user without a role is refused" bash -c '! setpriv --reuid 65534 --regid 65534 --clear-groups timeout 5 prismesh session --runtime-dir /run/prismesh state'
+check "the device daemon may not look at the document" bash -c '! setpriv --reuid prismesh-deviced --regid prismesh --clear-groups timeout 5 prismesh session --runtime-dir /run/prismesh state'
+
+# --- killed, and hung ---
+# The count of recovered edits is the one thing that may differ.
+without_count() { sed 's/; [0-9]* edits* w[a-z]* recovered.*//' "$1"; }
+same_state() { state >/tmp/after && diff <(without_count /tmp/before) <(without_count /tmp/after); }
+state >/tmp/before
+# The promise is 3 s; on a machine that does much else it may take longer.
+max_back_ms=6000
+for signal in KILL STOP; do
+  for service in $services; do
+    pid=$(main_pid $service)
+    kill -$signal "$pid"
+    came_back() { local now; now=$(main_pid $service); [ "$now" != "$pid" ] && [ "$now" != 0 ] && is_active $service && state >/dev/null; }
+    if took=$(until_ms 15000 came_back) && [ "$took" -le $max_back_ms ]; then
+      ok "$service after SIG$signal: usable again after $took ms"
+    elif [ -n "$took" ]; then
+      bad "$service after SIG$signal: usable again only after $took ms"
+    else
+      bad "$service after SIG$signal isn't back"
+      systemctl --no-pager status $service | head -20
+    fi
+    check "and nothing is lost" same_state
+  done
+done
+check "the edits go on" session edit '{"edit":"lift","distance":-2}'
+check "and are saved" session save
+check "no unit has failed" bash -c '[ -z "$(systemctl list-units --failed --no-legend "prismesh*")" ]'
+[ $failed -eq 0 ] && echo "all is well"
+exit 0
