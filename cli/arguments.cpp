@@ -254,6 +254,13 @@ void add_devices(Parser& parser) {
   app->add_flag("--reload", options->reload, "first read prismesh.toml and the display profile again");
 }
 
+void add_doctor(Parser& parser) {
+  const auto [app, options] = add_command<DoctorOptions>(
+      parser, "doctor", "say of everything that a station needs whether it is good, or what to do about it", doctor);
+  add_optional(app, "--runtime-dir", options->runtime_directory, "the folder of the daemons' sockets");
+  add_optional(app, "--state-dir", options->state_directory, "the folder of modeld's journals");
+}
+
 /// Wrong usage as an Error that names the command and, for an unknown command, the nearest known one.
 tl::unexpected<Error> usage_error(const Parser& parser, std::span<const std::string> args, const CLI::ParseError& problem) {
   std::string command = "prismesh";
@@ -283,6 +290,7 @@ Result<Action> parse_arguments(std::span<const std::string> args) {
   add_render(*parser);
   add_session(*parser);
   add_devices(*parser);
+  add_doctor(*parser);
   try {
     std::vector<std::string> reversed(args.rbegin(), args.rend());
     parser->app.parse(std::move(reversed));

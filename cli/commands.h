@@ -119,4 +119,10 @@ struct DevicesOptions {
 };
 int devices(const DevicesOptions& options, const Common& common, const Context& context);
 
+struct DoctorOptions {
+  std::optional<std::filesystem::path> runtime_directory;
+  std::optional<std::filesystem::path> state_directory;
+};
+int doctor(const DoctorOptions& options, const Common& common, const Context& context);
+
 }  // namespace prismesh::cli

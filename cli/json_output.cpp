@@ -196,6 +196,18 @@ std::string bench_json(const BenchReport& report) {
   return json.dump();
 }
 
+std::string findings_json(const std::vector<Finding>& findings) {
+  Json listed = Json::array();
+  for (const Finding& finding : findings)
+    listed.push_back({{"what", finding.what},
+                      {"grade", finding.grade == Grade::good   ? "good"
+                                : finding.grade == Grade::note ? "note"
+                                                               : "bad"},
+                      {"says", printable(finding.says)},
+                      {"to_do", finding.to_do}});
+  return Json{{"findings", std::move(listed)}}.dump();
+}
+
 std::string devices_json(const DeviceFigures& figures) {
   const ipc::EyesState& eyes = figures.eyes;
   const ipc::PrismState& mask = figures.mask;

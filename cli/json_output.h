@@ -9,6 +9,7 @@
 #include "cli/check_figures.h"
 #include "cli/device_figures.h"
 #include "cli/figures.h"
+#include "cli/machine_checks.h"
 #include "mesh/document/document.h"
 #include "mesh/document/edit_report.h"
 #include "mesh/document/journal.h"
@@ -24,6 +25,8 @@ std::string replay_json(const std::vector<mesh::document::ReplayStep>& steps, co
 std::string diff_json(const Difference& difference);
 std::string distance_json(const Gap& gap);
 std::string bench_json(const BenchReport& report);
+/// Of `doctor`.
+std::string findings_json(const std::vector<Finding>& findings);
 std::string devices_json(const DeviceFigures& figures);
 
 }  // namespace prismesh::cli

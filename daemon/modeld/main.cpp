@@ -32,7 +32,7 @@ int main(int argc, char** argv) {
     }
     prismesh::modeld::DaemonOptions options;
     options.runtime_directory = prismesh::ipc::runtime_directory(given.path("--runtime-dir"));
-    options.state_directory = prismesh::modeld::state_directory(given.path("--state-dir"));
+    options.state_directory = prismesh::ipc::state_directory(given.path("--state-dir"));
     options.history_bytes = static_cast<std::size_t>(settings->document.history_mb) << 20;
     options.hang_limit = std::chrono::seconds(settings->document.hang_s);
     prismesh::Result<prismesh::modeld::Daemon> daemon = prismesh::modeld::Daemon::start(options);

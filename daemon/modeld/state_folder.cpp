@@ -67,17 +67,6 @@ void prune_retired(const fs::path& folder) {
 
 }  // namespace
 
-fs::path state_directory(const std::optional<fs::path>& override) {
-  if (override) return *override;
-  if (const char* folder = std::getenv("STATE_DIRECTORY"); folder != nullptr && *folder != 0) {
-    const std::string all = folder;
-    return all.substr(0, all.find(':'));
-  }
-  if (const char* folder = std::getenv("XDG_STATE_HOME"); folder != nullptr && *folder != 0) return fs::path(folder) / "prismesh";
-  const char* home = std::getenv("HOME");
-  return fs::path(home != nullptr && *home != 0 ? home : "/") / ".local/state/prismesh";
-}
-
 fs::path StateFolder::journal(const fs::path& deck, const Hash128& content) const {
   return folder_ / (deck_name(deck) + "-" + content.hex() + kJournal);
 }

@@ -14,9 +14,6 @@ namespace prismesh::modeld {
 /// The ending of what was moved aside since it can't be read.
 inline constexpr const char* kDamaged = ".damaged";
 
-/// Returns `override` if given, else $STATE_DIRECTORY, else $XDG_STATE_HOME/prismesh, else ~/.local/state/prismesh.
-std::filesystem::path state_directory(const std::optional<std::filesystem::path>& override = {});
-
 class StateFolder {
  public:
   explicit StateFolder(std::filesystem::path folder) : folder_(std::move(folder)) {}

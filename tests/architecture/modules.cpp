@@ -70,7 +70,7 @@ const std::vector<Module>& modules() {
        {"kiosk/tools/files", "kiosk/tools/comparison", "kiosk/tools/selection", "kiosk/tools/shaping", "kiosk/tools/quality",
         "kiosk/tools/mesh_operations", "kiosk/tools/parts", "kiosk/tools/view", "kiosk/calibration", "drivers/settings"}},
 
-      {"cli", {"ipc/device", "ipc/model"}},
+      {"cli", {"ipc/device", "ipc/model", "drivers/settings"}},
   };
   return kModules;
 }

@@ -281,7 +281,7 @@ TEST_F(Cli, a_repair_that_is_stopped_is_written_where_that_is_asked_for) {
                                                 {"--edit", R"({"edit":"repair","scope":"all","on_cancel":"keep"})"}};
   std::string kept;
   for (std::vector<std::string>& way : ways) {
-    SteppingClock clock(60);
+    SteppingClock clock(200);  // by then some elements are better
     std::ostringstream out, err;
     std::vector<std::string> args = {"edit", deck, "-o", path("out.k"), "--journal", path("kept.journal"), "--json"};
     args.insert(args.end(), way.begin(), way.end());

@@ -64,6 +64,11 @@ check "the devices are there" timeout 5 prismesh devices --runtime-dir $run
 state >/tmp/before
 check "the state names the deck" grep -q sample.k /tmp/before
 
+prismesh --json doctor --runtime-dir $run --state-dir /var/lib/prismesh-modeld >/tmp/doctor
+for good in units roles modeld deviced; do
+  check "the doctor finds nothing wrong with $good" grep -q "\"what\":\"$good\",\"grade\":\"good\"" /tmp/doctor
+done
+
 # --- roles ---
 as() { setpriv --reuid "$1" --regid "$2" --clear-groups "${@:3}"; }
 check "the kiosk's user may edit" as prismesh-kiosk prismesh timeout 5 prismesh session --runtime-dir $run edit '{"edit":"select","expr":"5000001-5000050"}'

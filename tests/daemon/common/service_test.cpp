@@ -1,4 +1,5 @@
 // A daemon of its own protocol, as small as one can be: who may ask it for what.
+#include <atomic>
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
@@ -82,7 +83,7 @@ using testing::HasSubstr;
 class Dial final : public Service<DialProtocol> {
  public:
   int value = 0;
-  int gone = 0;
+  std::atomic<int> gone = 0;
 
  private:
   Result<Welcomed> welcome(ipc::ClientId) override { return Welcomed{ipc::Done{}, {}}; }
@@ -176,6 +177,7 @@ TEST_F(ServiceTest, does_what_its_own_user_asks_for_and_tells_everybody) {
   EXPECT_THAT(said, HasSubstr(R"({"answer":"done","to":1})"));
   EXPECT_THAT(said, HasSubstr(R"("value":0)"));
   EXPECT_THAT(said, HasSubstr(R"({"event":"turned","value":5})"));
+  for (int i = 0; i < 500 && dial_.gone == 0; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
   dial_.stop();
   thread_.join();
   EXPECT_EQ(dial_.value, 5);
