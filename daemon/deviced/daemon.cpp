@@ -32,8 +32,8 @@ constexpr std::chrono::milliseconds kReportPause{500};
 
 ipc::ServerLimits limits() {
   ipc::ServerLimits limits;
-  limits.line_bytes = 64 * 1024;
-  limits.queue_bytes = 1024 * 1024;
+  limits.line_bytes = std::size_t{64} * 1024;
+  limits.queue_bytes = std::size_t{1024} * 1024;
   return limits;
 }
 

@@ -54,7 +54,7 @@ Result<Roles> roles_of_user(const std::string& user, const toml::node& node, con
 }
 
 std::optional<uid_t> user_of_the_system(const std::string& user) {
-  std::vector<char> texts(16 * 1024);
+  std::vector<char> texts(std::size_t{16} * 1024);
   passwd entry{};
   passwd* found = nullptr;
   if (::getpwnam_r(user.c_str(), &entry, texts.data(), texts.size(), &found) != 0 || found == nullptr) return std::nullopt;

@@ -94,10 +94,12 @@ void note_stop(int attempt, int max_rounds, const repair::Repaired& repaired, Ed
   report.stopped = stopped;
 }
 
-/// The words of a further attempt.
-Doing further(int attempt, const Doing& doing) {
-  if (attempt == 1 || !doing) return doing;
-  return [attempt, &doing] { return "attempt " + std::to_string(attempt) + ", " + doing(); };
+/// The words of a further pass, or of a further attempt in the first one. `pass`: from 0.
+Doing further(int pass, int attempt, const Doing& doing) {
+  if ((pass == 0 && attempt == 1) || !doing) return doing;
+  return [pass, attempt, &doing] {
+    return (pass > 0 ? "pass " + std::to_string(pass + 1) : "attempt " + std::to_string(attempt)) + ", " + doing();
+  };
 }
 
 /// The error of a repair that was stopped while the deck couldn't hold what it had reached.
@@ -120,7 +122,7 @@ class RepairProgress {
   /// Of an attempt. It doesn't go back when another attempt begins; each pass counts as most of what is left.
   bool report(double fraction, const Doing& doing) {
     furthest_ = std::max(furthest_, 1 - std::pow(1 - kShareOfPass, pass) * (1 - kShareOfPass * fraction));
-    if (progress_ && !progress_(furthest_, further(attempt, doing))) is_told_to_stop_ = true;
+    if (progress_ && !progress_(furthest_, further(pass, attempt, doing))) is_told_to_stop_ = true;
     return !is_told_to_stop_;
   }
 
@@ -220,7 +222,7 @@ Result<void> add_pass(const Document& document, Pass pass, Reached& reached) {
   repair::Composition both = repair::compose(model, all.change, pass.repaired.change);
   Generation next = document.current();
   EditReport figures;
-  if (const Result<void> done = restructure(document, both.change, next, figures); !done) return done;
+  if (Result<void> done = restructure(document, both.change, next, figures); !done) return done;
   const auto node_index = [&](NodeIndex& node) {
     if (node.valid() && node.value >= model.node_count()) node = both.new_node_index[node.value - model.node_count()];
   };

@@ -5,6 +5,7 @@
 #include <functional>
 #include <numeric>
 #include <string_view>
+#include <tuple>
 #include <utility>
 
 #include "base/tasks.h"
@@ -113,7 +114,7 @@ bool help_last(const RepairContext& context, RepairState& state) {
 struct Badness {
   std::size_t failing = 0;
   double other = 0;
-  auto operator<=>(const Badness&) const = default;
+  bool operator<(const Badness& than) const { return std::tie(failing, other) < std::tie(than.failing, than.other); }
 };
 
 constexpr double kTriangleTooMany = 4;  ///< counts as so many warnings: thinning a cluster may make some shells warn
