@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <utility>
 #include <vector>
 
 #include "mesh/connections/sheet_reach.h"
 #include "mesh/connections/sheets_near.h"
+#include "mesh/connections/touching_sheets.h"
 #include "mesh/model/adjacency.h"
 
 namespace prismesh::mesh::connections {
@@ -101,7 +103,10 @@ JoinedSheets find_joined_sheets(const Model& model, std::span<const NodeSet> car
   const ShellsAtEnds shells_at_ends(model, out_of_sight, joints);
   std::vector<JoinedSheets::Pair> pairs;
   for (const NodeSet& ends : joints) join(model, ends, shells_at_ends, pairs);
-  return JoinedSheets(std::move(pairs));
+  std::vector<std::uint32_t> sheet_numbers = number_sheets(model, out_of_sight);
+  const std::vector<JoinedSheets::Pair> touching = find_touching(model, sheet_numbers, pairs, out_of_sight);
+  pairs.insert(pairs.end(), touching.begin(), touching.end());
+  return {std::move(pairs), std::move(sheet_numbers)};
 }
 
 }  // namespace prismesh::mesh::connections

@@ -25,10 +25,13 @@ double max_side(const Model& model, ShellIndex shell) {
 }
 
 double sheet_reach(const Model& model, ShellIndex shell, Attachment attachment) {
-  const bool tied = attachment == Attachment::tied;
+  const bool placed = attachment == Attachment::placed;
   const double thickness = quality::thickness_of(model, shell.value);
-  const double by_thickness = thickness > 0 ? (tied ? kTiedReachInThicknesses : kPlacedReachInThicknesses) * thickness : 0.0;
-  return std::max((tied ? kTiedReachInSides : kPlacedReachInSides) * mean_side(model, shell), by_thickness);
+  const double by_thickness = thickness > 0 ? (placed ? kPlacedReachInThicknesses : kTiedReachInThicknesses) * thickness : 0.0;
+  if (attachment == Attachment::touching) return by_thickness;
+  return std::max((placed ? kPlacedReachInSides : kTiedReachInSides) * mean_side(model, shell), by_thickness);
 }
+
+double max_joint_length(const Model& model, ShellIndex shell) { return kMaxJointInSides * max_side(model, shell); }
 
 }  // namespace prismesh::mesh::connections

@@ -33,8 +33,10 @@ class CellTable {
   }
   Cell cell_of(const Vec3& point) const {
     Cell cell;
-    for (int i = 0; i < 3; ++i)
-      cell[static_cast<std::size_t>(i)] = static_cast<std::int64_t>(std::floor(std::clamp(point[i] / width_, -1e15, 1e15)));
+    for (int i = 0; i < 3; ++i) {
+      const double along = point[i] / width_;
+      cell[static_cast<std::size_t>(i)] = std::isnan(along) ? 0 : static_cast<std::int64_t>(std::floor(std::clamp(along, -1e15, 1e15)));
+    }
     return cell;
   }
   bool may_hold_any(const Vec3& low, const Vec3& high) const {

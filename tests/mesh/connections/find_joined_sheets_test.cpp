@@ -30,12 +30,8 @@ struct TwoSheets {
         }
   }
   Model model(const std::vector<test::ElementSpec>& elements) const {
-    Model made = test::make_model(nodes, shells, elements);
-    std::vector<Part> parts = *made.parts;
-    for (Part& part : parts)
-      if (thickness > 0) part.thickness = thickness;
-    made.parts = std::make_shared<const std::vector<Part>>(std::move(parts));
-    return made;
+    const Model made = test::make_model(nodes, shells, elements);
+    return thickness > 0 ? test::with_thickness(made, thickness) : made;
   }
   /// Whether the elements join the sheets; they join no shell to one of the same sheet.
   bool joined_by(const std::vector<test::ElementSpec>& elements, OutOfSight hidden = {}) const {
@@ -47,11 +43,14 @@ struct TwoSheets {
 
 TEST(JoinedSheets, hold_each_pair_in_both_orders_once) {
   const ShellIndex a(std::size_t{3}), b(std::size_t{7}), c(std::size_t{5});
-  const JoinedSheets joined({{b, a}, {a, b}, {a, c}});
+  const JoinedSheets joined({{b, a}, {a, b}, {a, c}}, {10, 10, 10, 10, 20, 20, 20, 30, 40});
   EXPECT_EQ(std::vector(joined.all().begin(), joined.all().end()), (std::vector<JoinedSheets::Pair>{{a, c}, {a, b}, {c, a}, {b, a}}));
   EXPECT_EQ(joined.of(a).size(), 2u);
   EXPECT_EQ(joined.of(b).front().second, a);
   EXPECT_TRUE(joined.of(ShellIndex(std::size_t{4})).empty());
+  EXPECT_TRUE(joined.joined(10, 20) && joined.joined(20, 10) && joined.joined(30, 10)) << "sheets, by any of their shells";
+  EXPECT_TRUE(joined.joined(40, 40)) << "a sheet is joined to itself";
+  EXPECT_FALSE(joined.joined(20, 30)) << "each is joined to the first, not to each other";
 }
 
 TEST(FindJoinedSheets, by_elements_of_every_kind) {
@@ -98,7 +97,7 @@ TEST(FindJoinedSheets, not_with_a_hidden_sheet) {
 
 TEST(FindJoinedSheets, up_to_the_reach_at_which_a_placed_node_lies_on_a_sheet) {
   // the end above the second sheet is 0.25 sides or a thickness away, less or more
-  for (const double thickness : {0.0, 0.8, 2.0}) {
+  for (const double thickness : {0.0, 0.8, 1.245}) {
     const double reach = std::max(0.25 * 5, thickness);
     for (const double share : {0.99, 1.01}) {
       TwoSheets sheets;

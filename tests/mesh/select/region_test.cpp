@@ -252,7 +252,8 @@ TEST(Welds, lead_from_sheet_to_sheet) {
       shells.push_back({a, 1 + sheet, {a, a + 1, a + 11, a + 10}});
     }
   const Model model = test::make_model(nodes, shells);
-  const connections::JoinedSheets joined({{ShellIndex(1), ShellIndex(5)}, {ShellIndex(10), ShellIndex(7)}});
+  const connections::JoinedSheets joined({{ShellIndex(1), ShellIndex(5)}, {ShellIndex(10), ShellIndex(7)}},
+                                         {0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2});
   const auto grown = [&](RegionBound bound, const connections::JoinedSheets* across) {
     return region(model, {ShellIndex(0)}, {bound, 30, {}, across}).size();
   };
