@@ -127,7 +127,7 @@ Result<void> apply_edit(const Document& document, const Invert&, Generation& nex
     for (std::size_t s = 0, b = 0; s < next.model.shell_count(); ++s) {
       const bool was = b < before.shells.size() && before.shells[b].value == s;
       if (was) ++b;
-      if (!was && select::in_sight(next.model, ShellIndex(s), out_of_sight)) after.shells.emplace_back(s);
+      if (!was && in_sight(next.model, ShellIndex(s), out_of_sight)) after.shells.emplace_back(s);
     }
     after.nodes = nodes_of(next.model, after.shells);
   }

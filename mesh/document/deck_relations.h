@@ -8,19 +8,14 @@
 #include <span>
 #include <vector>
 
+#include "mesh/connections/node_on_sheet.h"
 #include "mesh/deck/data/deck.h"
 #include "mesh/document/dependents.h"
 #include "mesh/select/names.h"
 
 namespace prismesh::mesh::document {
 
-/// An element other than a shell at a node. It moves with the node.
-struct ElementUse {
-  NodeIndex node;
-  ElementClass element_class = ElementClass::other;
-  std::uint32_t element = 0;  ///< index in Model::elements[element_class]
-  auto operator<=>(const ElementUse&) const = default;
-};
+using connections::ElementUse;
 
 /// An element that the model leaves out at a node.
 struct HiddenUse {

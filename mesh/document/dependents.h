@@ -6,25 +6,18 @@
 #include <cstdint>
 #include <vector>
 
-#include "mesh/model/model.h"
+#include "mesh/connections/node_on_sheet.h"
 #include "mesh/model/node_set.h"
 
 namespace prismesh::mesh::document {
 
-/// A node that lies on a sheet without being a corner of it.
-struct NodeOnSheet {
-  NodeIndex node;
-  ShellIndex shell;              ///< the nearest, when the deck was opened
-  double reach = 0;              ///< farther than this from the sheet it doesn't lie on it
-  bool tied = false;             ///< a node of another sheet that a contact ties: it doesn't follow
-  ElementClass element_class{};  ///< not tied: the element it belongs to
-  std::uint32_t of = 0;          ///< that element's index, or the number of the contact's card among the referrers
-};
+using connections::NodeOnSheet;
 
 /// A card that joins nodes: a rigid body, a weld, a joint, an equation.
 struct JoiningCard {
   std::uint32_t referrer = 0;
   NodeSet nodes;
+  bool joins_sheets = false;  ///< a spot weld or a rivet
 };
 
 struct JoinedNode {

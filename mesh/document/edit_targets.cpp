@@ -9,7 +9,7 @@
 #include <variant>
 #include <vector>
 
-#include "mesh/document/deck_relations.h"
+#include "mesh/document/joined_sheets.h"
 #include "mesh/document/part_marks.h"
 #include "mesh/model/adjacency.h"
 #include "mesh/select/loops.h"
@@ -35,7 +35,7 @@ Result<NodeIndex> find_referenced_node(const Model& model, const NodeReference& 
 namespace {
 
 /// The shells that a region begins with. Errors: no such node, no shell in sight.
-Result<ShellSet> region_start(const Model& model, const NodeReference& reference, select::OutOfSight hidden) {
+Result<ShellSet> region_start(const Model& model, const NodeReference& reference, OutOfSight hidden) {
   if (const auto* point = std::get_if<std::array<double, 3>>(&reference)) {
     ShellSet near = select::shells_near(model, Vec3((*point)[0], (*point)[1], (*point)[2]), hidden);
     if (near.empty()) return fail("", "no shell is in sight, so there is no region");
@@ -50,7 +50,7 @@ Result<ShellSet> region_start(const Model& model, const NodeReference& reference
 }
 
 /// Errors: no free edge there.
-Result<Selection> loop_at(const Generation& generation, const SelectRegion& recipe, const ShellSet& start, select::OutOfSight hidden) {
+Result<Selection> loop_at(const Generation& generation, const SelectRegion& recipe, const ShellSet& start, OutOfSight hidden) {
   const Model& model = generation.model;
   if (recipe.across_welds)
     return fail("", "select_region: a loop of free edges ends with its sheet, so \"across_welds\" doesn't go with \"by\": \"free_edge\"");
@@ -77,11 +77,10 @@ Result<Selection> region_at(const Generation& generation, const SelectRegion& re
   if (recipe.by == RegionBy::creases) options.bound = select::RegionBound::creases;
   if (recipe.by == RegionBy::part) options.bound = select::RegionBound::part;
   if (recipe.by == RegionBy::piece) options.bound = select::RegionBound::piece;
-  select::WeldedShells welds;
+  connections::JoinedSheets joined;
   if (recipe.across_welds) {
-    const auto& deck = generation.relations->deck;
-    welds = select::find_welds(model, deck ? deck->references.get() : nullptr, hidden);
-    options.across = &welds;
+    joined = joined_sheets(generation, hidden);
+    options.across = &joined;
   }
   ShellSet shells = select::region(model, *start, options);
   NodeSet nodes = nodes_of(model, shells);

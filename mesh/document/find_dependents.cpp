@@ -4,8 +4,8 @@
 #include <numeric>
 #include <utility>
 
+#include "mesh/connections/nodes_on_sheets.h"
 #include "mesh/document/node_cards.h"
-#include "mesh/document/nodes_on_sheets.h"
 #include "mesh/model/adjacency.h"
 
 namespace prismesh::mesh::document {
@@ -19,7 +19,7 @@ Dependents find_dependents(const deck::Deck& deck, const Model& model, std::span
     for (const NodeIndex node : dependents.joining_cards[j].nodes) dependents.joined_nodes.push_back({node, static_cast<std::uint32_t>(j)});
   std::sort(dependents.joined_nodes.begin(), dependents.joined_nodes.end());
 
-  std::vector<NodeOnSheet> candidates = find_weld_nodes(model, uses);
+  std::vector<NodeOnSheet> candidates = connections::find_weld_nodes(model, uses);
   for (const auto& [node, referrer] : cards.tied) {
     if (model.adjacency->shells_of(node).empty()) continue;
     NodeOnSheet tied;
@@ -32,7 +32,7 @@ Dependents find_dependents(const deck::Deck& deck, const Model& model, std::span
   std::stable_sort(candidates.begin(), candidates.end(), by_node);
   candidates.erase(std::unique(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) { return a.node == b.node; }),
                    candidates.end());
-  dependents.on_sheets = find_sheets(model, std::move(candidates));
+  dependents.on_sheets = connections::find_sheets(model, std::move(candidates));
   dependents.on_sheets_by_shell.resize(dependents.on_sheets.size());
   std::iota(dependents.on_sheets_by_shell.begin(), dependents.on_sheets_by_shell.end(), 0u);
   std::stable_sort(dependents.on_sheets_by_shell.begin(), dependents.on_sheets_by_shell.end(),

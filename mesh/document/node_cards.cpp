@@ -26,6 +26,13 @@ bool joins_nodes(std::string_view keyword) {
   return std::find(std::begin(kWhole), std::end(kWhole), first) != std::end(kWhole);
 }
 
+/// Keywords of welds and rivets.
+bool joins_sheets(std::string_view keyword) {
+  for (const std::string_view word : {"CONSTRAINED_SPOTWELD", "CONSTRAINED_GENERALIZED_WELD", "CONSTRAINED_RIVET"})
+    if (keyword.starts_with(word)) return true;
+  return false;
+}
+
 /// Collects nodes that cards name, also by their sets.
 class CardNodes {
  public:
@@ -61,14 +68,14 @@ class CardNodes {
 NodeCards find_node_cards(const References& references, const Model& model) {
   NodeCards cards;
   const std::span<const Referrer> referrers = references.referrers();
-  enum class Card : std::uint8_t { other, tied, join };
+  enum class Card : std::uint8_t { other, tied, join, join_sheets };
   std::vector<Card> cards_are(referrers.size(), Card::other);
   for (std::size_t r = 0; r < referrers.size(); ++r) {
     const std::string keyword = upper(referrers[r].keyword);
     if (has(keyword, "TIED") && has(keyword, "CONTACT"))
       cards_are[r] = Card::tied;
     else if (joins_nodes(keyword))
-      cards_are[r] = Card::join;
+      cards_are[r] = joins_sheets(keyword) ? Card::join_sheets : Card::join;
   }
   // If a keyword's cards have no ids, each line joins its own nodes.
   std::map<std::pair<std::uint32_t, std::uint64_t>, std::uint32_t> join_of;
@@ -80,10 +87,10 @@ NodeCards find_node_cards(const References& references, const Model& model) {
       NodeSet slaves;
       nodes.add(reference, slaves);
       for (const NodeIndex node : slaves) cards.tied.emplace_back(node, reference.referrer);
-    } else if (card == Card::join) {
+    } else if (card != Card::other) {
       const std::uint64_t line = referrers[reference.referrer].id > 0 ? 0 : reference.card;
       const auto [join, is_new] = join_of.emplace(std::pair(reference.referrer, line), static_cast<std::uint32_t>(cards.joining.size()));
-      if (is_new) cards.joining.push_back({reference.referrer, {}});
+      if (is_new) cards.joining.push_back({reference.referrer, {}, card == Card::join_sheets});
       nodes.add(reference, cards.joining[join->second].nodes);
     }
   }

@@ -11,6 +11,7 @@
 #include "mesh/document/edit_kinds.h"
 #include "mesh/document/edit_targets.h"
 #include "mesh/document/followers.h"
+#include "mesh/document/joined_sheets.h"
 #include "mesh/document/refusal.h"
 #include "mesh/document/selection.h"
 #include "mesh/document/symmetry.h"
@@ -157,8 +158,13 @@ Result<shape::Weights> find_weights(const Generation& generation, const Edit& ed
   if (!nodes) return fail(nodes.error());
   const Result<std::optional<NodeIndex>> grab = find_grab(generation.model, *nodes, shaping);
   if (!grab) return fail(grab.error());
-  const Result<shape::WeightPlaces> places = find_places(generation.model, *nodes, edit, shaping);
+  Result<shape::WeightPlaces> places = find_places(generation.model, *nodes, edit, shaping);
   if (!places) return fail(places.error());
+  connections::JoinedSheets joined;
+  if (shaping.weights.across_welds && shaping.weights.falloff.profile != shape::Profile::constant) {
+    joined = joined_sheets(generation, {});
+    places->joined = &joined;
+  }
   Result<shape::Weights> weights = shape::compute_weights(generation.model, *nodes, *grab, shaping.weights, *places);
   // A constant falloff needs no path along the surface: separate pieces move too.
   if (weights && shaping.weights.falloff.profile == shape::Profile::constant) weights->unreached = 0;

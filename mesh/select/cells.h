@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "mesh/model/adjacency.h"
+#include "mesh/model/in_sight.h"
 #include "mesh/model/model.h"
-#include "mesh/select/in_sight.h"
 
 namespace prismesh::mesh::select {
 

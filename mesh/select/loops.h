@@ -1,9 +1,9 @@
 // Selects loops of free edges.
 #pragma once
 
+#include "mesh/model/in_sight.h"
 #include "mesh/model/model.h"
 #include "mesh/model/node_set.h"
-#include "mesh/select/in_sight.h"
 
 namespace prismesh::mesh::select {
 

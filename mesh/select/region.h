@@ -4,9 +4,10 @@
 #include <cstdint>
 #include <span>
 
+#include "mesh/connections/joined_sheets.h"
+#include "mesh/model/in_sight.h"
 #include "mesh/model/model.h"
 #include "mesh/model/node_set.h"
-#include "mesh/select/welds.h"
 
 namespace prismesh::mesh::select {
 
@@ -17,9 +18,10 @@ enum class RegionBound : std::uint8_t { features, creases, part, piece };
 
 struct RegionOptions {
   RegionBound bound = RegionBound::features;
-  double angle_degrees = 30;             ///< for the bounds features and creases; 180: nothing bends by more
-  OutOfSight out_of_sight;               ///< hidden parts
-  const WeldedShells* across = nullptr;  ///< continues across these welds, across junctions and shared nodes; null: it doesn't
+  double angle_degrees = 30;  ///< for the bounds features and creases; 180: nothing bends by more
+  OutOfSight out_of_sight;    ///< hidden parts
+  /// Continues across these joints, across junctions and shared nodes; null: it doesn't.
+  const connections::JoinedSheets* across = nullptr;
 };
 
 /// Returns the region that contains the shells `start`. A region that begins in a fillet (mesh/select/fillets.h) is the fillet; creases of

@@ -68,7 +68,8 @@ class Weighing {
     weights.weight.reserve(share.size());
     for (std::size_t i = 0; i < share.size(); ++i)
       weights.weight.push_back(reached[i] == 0 && !constant ? 0 : evaluate(options_.falloff, share[i]));
-    if (options_.across_welds && !constant) carry_across_welds(model_, patch_, reached, weights.weight);
+    if (options_.across_welds && !constant && places_.joined != nullptr)
+      carry_across_welds(model_, patch_, *places_.joined, reached, weights.weight);
     weights.unreached = static_cast<std::size_t>(std::count(reached.begin(), reached.end(), 0));
     return weights;
   }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "mesh/connections/joined_sheets.h"
 #include "mesh/model/model.h"
 #include "mesh/model/node_set.h"
 #include "mesh/shape/axis.h"
@@ -38,15 +39,16 @@ struct WeightOptions {
   Falloff falloff;
   FreeEnds free_ends = FreeEnds::rigid;
   Origin origin = Origin::grab;
-  /// A piece that no path connects to the grab gets the weights of the closest points of the connected ones, if it comes near enough. The
+  /// A piece that no path connects to the grab gets the weights of the closest points of those that WeightPlaces::joined joins it to. The
   /// constant profile doesn't need this.
   bool across_welds = false;
 };
 
 /// What weights depend on besides selection, grab and options.
 struct WeightPlaces {
-  std::optional<Axis> axis;       ///< of a rotation
-  std::optional<NodeIndex> edge;  ///< origin free_edge: the free edge through this node, or the nearest to it
+  std::optional<Axis> axis;                           ///< of a rotation
+  std::optional<NodeIndex> edge;                      ///< origin free_edge: the free edge through this node, or the nearest to it
+  const connections::JoinedSheets* joined = nullptr;  ///< for across_welds, which does nothing without
 };
 
 struct Weights {

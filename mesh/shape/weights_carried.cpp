@@ -5,8 +5,10 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "base/parallel_for.h"
+#include "mesh/connections/sheet_reach.h"
 #include "mesh/model/adjacency.h"
 #include "mesh/spatial/closest_point.h"
 
@@ -16,10 +18,20 @@ namespace {
 
 constexpr std::size_t kCarryGrain = 256;
 
+constexpr std::uint32_t kNoSheet = std::numeric_limits<std::uint32_t>::max();
+
+/// A part of one sheet whose nodes have weights.
+struct Surface {
+  std::uint32_t sheet = kNoSheet;
+  double reach = 0;  ///< the max of those of its shells
+  spatial::ShellTree tree;
+};
+
 class Carrying {
  public:
-  Carrying(const Model& model, const spatial::Patch& patch, std::vector<std::uint8_t>& reached, std::vector<double>& weight)
-      : model_(model), patch_(patch), reached_(reached), weight_(weight) {
+  Carrying(const Model& model, const spatial::Patch& patch, const connections::JoinedSheets& joined, std::vector<std::uint8_t>& reached,
+           std::vector<double>& weight)
+      : model_(model), patch_(patch), joined_(joined), reached_(reached), weight_(weight) {
     find_pieces();
   }
 
@@ -28,9 +40,9 @@ class Carrying {
     for (std::uint32_t i = 0; i < reached_.size(); ++i)
       if (reached_[i] != 0) source.push_back(i);
     while (!source.empty() && !waiting_.empty()) {
-      const ShellSet shells = shells_at(source);
-      trees_.emplace_back(model_, shells);
-      mark_near(max_reach(shells));
+      first_of_round_ = surfaces_.size();
+      add_surfaces(source);
+      mark_near();
       source = carry_near_pieces();
     }
   }
@@ -61,39 +73,57 @@ class Carrying {
     last_.resize(reached_.size());
   }
 
-  ShellSet shells_at(const std::vector<std::uint32_t>& nodes) const {
-    ShellSet shells;
+  /// Adds the surfaces at these nodes, one for each sheet.
+  void add_surfaces(const std::vector<std::uint32_t>& nodes) {
+    std::vector<std::pair<std::uint32_t, ShellIndex>> shells;
     for (const std::uint32_t node : nodes)
       for (const ShellIndex shell : model_.adjacency->shells_of(patch_.nodes[node]))
-        if (!model_.is_removed(shell)) shells.push_back(shell);
+        if (!model_.is_removed(shell)) shells.emplace_back(joined_.sheet_of(shell), shell);
     std::sort(shells.begin(), shells.end());
     shells.erase(std::unique(shells.begin(), shells.end()), shells.end());
-    return shells;
+    for (std::size_t at = 0; at < shells.size();) {
+      const std::uint32_t sheet = shells[at].first;
+      ShellSet of_sheet;
+      double reach = 0;
+      for (; at < shells.size() && shells[at].first == sheet; ++at) {
+        of_sheet.push_back(shells[at].second);
+        reach = std::max(reach, connections::max_joint_length(model_, shells[at].second));
+      }
+      surfaces_.push_back({sheet, reach, spatial::ShellTree(model_, of_sheet)});
+    }
   }
 
-  double max_reach(const ShellSet& shells) const {
-    double reach = 0;
-    for (const ShellIndex shell : shells) reach = std::max(reach, reach_of(shell));
-    return reach;
+  std::uint32_t sheet_of(std::uint32_t node) const {
+    for (const ShellIndex shell : model_.adjacency->shells_of(patch_.nodes[node]))
+      if (!model_.is_removed(shell)) return joined_.sheet_of(shell);
+    return kNoSheet;
   }
 
-  /// Marks the waiting nodes that are near the surface of the last round.
-  void mark_near(double radius) {
+  /// The closest point of those of the surfaces from which weights may be carried to the node, unless `closest` is closer. Within reach: no
+  /// farther than the surface's reach.
+  std::optional<spatial::SurfacePoint> closest_on(std::span<const Surface> surfaces, std::uint32_t node, bool within_reach,
+                                                  std::optional<spatial::SurfacePoint> closest) const {
+    const std::uint32_t sheet = sheet_of(node);
+    for (const Surface& surface : surfaces) {
+      if (sheet != kNoSheet && !joined_.joined(sheet, surface.sheet)) continue;
+      double radius = closest ? closest->distance : std::numeric_limits<double>::infinity();
+      if (within_reach) radius = std::min(radius, surface.reach);
+      const auto found = surface.tree.closest(patch_.positions[node], radius);
+      if (found && (!closest || found->distance < closest->distance)) closest = found;
+    }
+    return closest;
+  }
+
+  /// Marks the waiting nodes that are near the surfaces of the last round.
+  void mark_near() {
+    const std::span<const Surface> of_round = std::span(surfaces_).subspan(first_of_round_);
     parallel_for(waiting_.size(), kCarryGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         auto& found = last_[waiting_[i]];
-        found = trees_.back().closest(patch_.positions[waiting_[i]], radius);
-        near_[waiting_[i]] = found && found->distance <= reach_of(found->shell) ? 1 : 0;
+        found = closest_on(of_round, waiting_[i], true, std::nullopt);
+        near_[waiting_[i]] = found && found->distance <= connections::max_joint_length(model_, found->shell) ? 1 : 0;
       }
     });
-  }
-
-  double reach_of(ShellIndex index) const {
-    const ShellNodes& shell = model_.shell(index);
-    const int corners = shell.corners();
-    double around = 0;
-    for (int i = 0; i < corners; ++i) around += (model_.position(shell.node[(i + 1) % corners]) - model_.position(shell.node[i])).norm();
-    return kWeldReach * around / corners;
   }
 
   double weight_at(const spatial::SurfacePoint& at) const {
@@ -109,12 +139,8 @@ class Carrying {
 
   /// The weight at the closest point of the surfaces of all rounds so far.
   double carried_weight(std::uint32_t node) const {
-    std::optional<spatial::SurfacePoint> closest = last_[node];
-    const std::size_t unasked = closest ? trees_.size() - 1 : trees_.size();
-    for (const spatial::ShellTree& tree : std::span(trees_).first(unasked)) {
-      const auto found = tree.closest(patch_.positions[node], closest ? closest->distance : std::numeric_limits<double>::infinity());
-      if (found && (!closest || found->distance < closest->distance)) closest = found;
-    }
+    const std::size_t unasked = last_[node] ? first_of_round_ : surfaces_.size();
+    const auto closest = closest_on(std::span(surfaces_).first(unasked), node, false, last_[node]);
     return closest ? weight_at(*closest) : 0.0;
   }
 
@@ -140,20 +166,24 @@ class Carrying {
 
   const Model& model_;
   const spatial::Patch& patch_;
+  const connections::JoinedSheets& joined_;
   std::vector<std::uint8_t>& reached_;
   std::vector<double>& weight_;
   std::uint32_t pieces_ = 0;
-  std::vector<std::uint32_t> piece_;                        ///< of each node, from 1; 0: connected to the grab
-  std::vector<std::uint32_t> waiting_;                      ///< nodes without a weight yet, ascending
-  std::vector<std::uint8_t> near_;                          ///< of each node
-  std::vector<std::optional<spatial::SurfacePoint>> last_;  ///< of each node: the closest point in the last tree, if near enough
-  std::vector<spatial::ShellTree> trees_;                   ///< one for each round: the shells whose nodes got weights
+  std::vector<std::uint32_t> piece_;    ///< of each node, from 1; 0: connected to the grab
+  std::vector<std::uint32_t> waiting_;  ///< nodes without a weight yet, ascending
+  std::vector<std::uint8_t> near_;      ///< of each node
+  std::vector<std::optional<spatial::SurfacePoint>>
+      last_;                        ///< of each node: the closest point on surfaces of the last round, if near enough
+  std::vector<Surface> surfaces_;   ///< round by round: the shells whose nodes got weights
+  std::size_t first_of_round_ = 0;  ///< in surfaces_, of the last round
 };
 
 }  // namespace
 
-void carry_across_welds(const Model& model, const spatial::Patch& patch, std::vector<std::uint8_t>& reached, std::vector<double>& weight) {
-  Carrying(model, patch, reached, weight).run();
+void carry_across_welds(const Model& model, const spatial::Patch& patch, const connections::JoinedSheets& joined,
+                        std::vector<std::uint8_t>& reached, std::vector<double>& weight) {
+  Carrying(model, patch, joined, reached, weight).run();
 }
 
 }  // namespace prismesh::mesh::shape

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "mesh/connections/find_joined_sheets.h"
 #include "mesh/model/adjacency.h"
 #include "mesh/select/loops.h"
 #include "mesh/select/outline.h"
@@ -154,7 +155,7 @@ BENCHMARK(region_by_piece)->Unit(benchmark::kMillisecond);
 
 void region_across_welds(benchmark::State& state) {
   for (auto _ : state) {
-    const select::WeldedShells welds = select::find_welds(whole(), nullptr, {});
+    const connections::JoinedSheets welds = connections::find_joined_sheets(whole(), {}, {});
     benchmark::DoNotOptimize(select::region(whole(), middle(), {select::RegionBound::features, 60, {}, &welds}));
   }
 }

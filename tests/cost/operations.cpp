@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "ipc/model/snapshot_publisher.h"
+#include "mesh/connections/find_joined_sheets.h"
 #include "mesh/deck/open.h"
 #include "mesh/deck/sample.h"
 #include "mesh/document/drag.h"
@@ -29,7 +30,6 @@
 #include "mesh/select/outline.h"
 #include "mesh/select/region.h"
 #include "mesh/select/visible.h"
-#include "mesh/select/welds.h"
 #include "mesh/spatial/closest_point.h"
 #include "mesh/spatial/cut_patch.h"
 #include "mesh/spatial/geodesic.h"
@@ -261,7 +261,9 @@ std::vector<Operation> make_operations() {
       {"report", [=](const Inputs& in) -> Work { return [&model = rails(in)] { keep(quality::report(model, criteria(), {})); }; }},
       {"structure", [=](const Inputs& in) -> Work { return [&model = rails(in)] { keep(quality::check_structure(model)); }; }},
       {"welds",
-       [](const Inputs& in) -> Work { return [&model = in.sample.current().model] { keep(select::find_welds(model, nullptr, {})); }; }},
+       [](const Inputs& in) -> Work {
+         return [&model = in.sample.current().model] { keep(connections::find_joined_sheets(model, {}, {})); };
+       }},
       {"expression",
        [=](const Inputs& in) -> Work {
          return [&model = rails(in)] { keep(need(select::evaluate(model, "1-900000:3,!1-500000:20,17-5000", select::EntityKind::node))); };

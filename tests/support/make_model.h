@@ -137,4 +137,12 @@ inline mesh::Model make_grid(int columns, int rows, const std::function<mesh::Ve
 /// Index of node (i, j) of make_grid.
 inline mesh::NodeIndex grid_node(int columns, int i, int j) { return mesh::NodeIndex(static_cast<std::size_t>(i + j * (columns + 1))); }
 
+/// The same model with all parts of this thickness.
+inline mesh::Model with_thickness(mesh::Model model, double thickness) {
+  std::vector<mesh::Part> parts = *model.parts;
+  for (mesh::Part& part : parts) part.thickness = thickness;
+  model.parts = std::make_shared<const std::vector<mesh::Part>>(std::move(parts));
+  return model;
+}
+
 }  // namespace prismesh::test

@@ -20,22 +20,22 @@ using testing::Contains;
 using testing::HasSubstr;
 using testing::Not;
 
-constexpr int kSheetColumns = 14, kSheetRows = 8, kOddColumns = 7;
+constexpr int kUnevenColumns = 14, kUnevenRows = 8, kOddColumns = 7;
 
-int sheet_node(int i, int j) { return 1 + i + j * (kSheetColumns + 1); }
+int sheet_node(int i, int j) { return 1 + i + j * (kUnevenColumns + 1); }
 
 /// A sheet of quads of 5 mm. Those of the left half have thicknesses at some corners only, so what they are divided into can't be written.
 std::string half_odd_sheet() {
   std::string nodes, odd, plain;
   char line[128];
-  for (int j = 0; j <= kSheetRows; ++j)
-    for (int i = 0; i <= kSheetColumns; ++i) {
+  for (int j = 0; j <= kUnevenRows; ++j)
+    for (int i = 0; i <= kUnevenColumns; ++i) {
       std::snprintf(line, sizeof line, "%8d%16.6f%16.6f%16.6f\n", sheet_node(i, j), 5.0 * i, 5.0 * j, 0.0);
       nodes += line;
     }
-  for (int j = 0; j < kSheetRows; ++j)
-    for (int i = 0; i < kSheetColumns; ++i) {
-      std::snprintf(line, sizeof line, "%8d%8d%8d%8d%8d%8d\n", 1 + i + j * kSheetColumns, 1, sheet_node(i, j), sheet_node(i + 1, j),
+  for (int j = 0; j < kUnevenRows; ++j)
+    for (int i = 0; i < kUnevenColumns; ++i) {
+      std::snprintf(line, sizeof line, "%8d%8d%8d%8d%8d%8d\n", 1 + i + j * kUnevenColumns, 1, sheet_node(i, j), sheet_node(i + 1, j),
                     sheet_node(i + 1, j + 1), sheet_node(i, j + 1));
       (i < kOddColumns ? odd : plain) += line;
       if (i < kOddColumns) odd += "             1.5             0.0             0.0             1.2\n";
@@ -70,13 +70,13 @@ TEST(Unwritable, repairs_elsewhere_and_names_what_it_left) {
   for (const std::string& note : report.notes) EXPECT_THAT(note, Not(HasSubstr("nothing was written")));
   const Model& model = document.current().model;
   for (std::size_t s = 0; s < before.shell_count(); ++s) {
-    if (static_cast<int>(s) % kSheetColumns >= kOddColumns) continue;
+    if (static_cast<int>(s) % kUnevenColumns >= kOddColumns) continue;
     EXPECT_FALSE(model.is_removed(ShellIndex(s)));
   }
   ASSERT_TRUE(model.topology_change);
   for (std::size_t s = model.topology_change->deck_shells; s < model.shell_count(); ++s) {
     const ShellIndex parent = model.topology_change->shell_parents[s - model.topology_change->deck_shells];
-    EXPECT_GE((model.shell_ids[parent.value] - 1) % kSheetColumns, kOddColumns) << "a piece of what can't be divided";
+    EXPECT_GE((model.shell_ids[parent.value] - 1) % kUnevenColumns, kOddColumns) << "a piece of what can't be divided";
   }
   const Result<deck::SaveReport> saved = save(document, folder / "b.k");
   ASSERT_TRUE(saved) << saved.error().text();
@@ -127,9 +127,9 @@ TEST(Unwritable, the_search_finds_each_place_has_a_progress_and_stops_when_told)
   // Quads two apart share no node: each is a place of its own, and those of the left half can't be written.
   Change change{model, {}};
   std::set<ShellIndex> wanted;
-  for (int j = 0; j < kSheetRows; j += 2)
-    for (int i = 0; i < kSheetColumns; i += 2) {
-      const ShellIndex shell = model.find_shell(1 + i + j * kSheetColumns);
+  for (int j = 0; j < kUnevenRows; j += 2)
+    for (int i = 0; i < kUnevenColumns; i += 2) {
+      const ShellIndex shell = model.find_shell(1 + i + j * kUnevenColumns);
       change.split(shell);
       if (i < kOddColumns) wanted.insert(shell);
     }

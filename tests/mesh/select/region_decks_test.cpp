@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "mesh/connections/find_joined_sheets.h"
 #include "mesh/deck/data/deck.h"
 #include "mesh/deck/open.h"
 #include "mesh/model/adjacency.h"
@@ -93,7 +94,7 @@ TEST_P(RealRegions, cover_the_sheets_once_and_widen_with_the_angle) {
     ++pieces;
   }
   EXPECT_LT(pieces, static_cast<int>(model.shell_count()) / 4);
-  const WeldedShells welds = find_welds(model, nullptr, {});
+  const connections::JoinedSheets welds = connections::find_joined_sheets(model, {}, {});
   for (std::size_t trial = 0; trial < 3; ++trial) {
     const ShellIndex start(trial * 7919 % model.shell_count());
     std::size_t before = 0;

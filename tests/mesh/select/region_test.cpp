@@ -161,10 +161,10 @@ TEST(Region, ends_with_the_part_or_the_piece) {
     for (int i = 0; i <= 5; ++i) nodes.push_back({1 + i + 10 * j, Vec3(i, j, 0)});
   const Model model =
       test::make_model(nodes, {{1, 1, {1, 2, 12, 11}}, {2, 2, {2, 3, 13, 12}}, {3, 3, {13, 14, 24, 23}}, {4, 1, {5, 6, 16, 15}}});
-  const auto grown = [&](RegionBound bound, const WeldedShells* across, OutOfSight out = {}) {
+  const auto grown = [&](RegionBound bound, const connections::JoinedSheets* across, OutOfSight out = {}) {
     return region(model, shells_at(model, NodeIndex(0), out), {bound, 30, out, across});
   };
-  const WeldedShells none;
+  const connections::JoinedSheets none;
   EXPECT_EQ(grown(RegionBound::part, nullptr), (ShellSet{ShellIndex(0), ShellIndex(3)}));
   EXPECT_EQ(grown(RegionBound::piece, nullptr), (ShellSet{ShellIndex(0), ShellIndex(1)}));
   EXPECT_EQ(grown(RegionBound::piece, &none), (ShellSet{ShellIndex(0), ShellIndex(1), ShellIndex(2)})) << "a shared node is a weld";
@@ -187,7 +187,7 @@ Model row_of_parts(const std::vector<std::int64_t>& parts) {
 
 TEST(Region, of_parts_goes_on_from_part_to_part_in_whatever_order_they_stand) {
   const Model model = row_of_parts({1, 2, 3, 4});
-  const WeldedShells none;
+  const connections::JoinedSheets none;
   for (const std::size_t start : {0U, 1U, 3U})
     EXPECT_EQ(region(model, {ShellIndex(start)}, {RegionBound::part, 30, {}, &none}).size(), 4u) << start;
 }
@@ -239,89 +239,28 @@ TEST(Invert, selects_nothing_that_was_removed) {
   EXPECT_NE(rest.front(), NodeIndex(0));
 }
 
-/// Two parallel sheets of 4 x 4 shells, 1.5 apart; their nodes are 1 + i + 10 j and 1001 + i + 10 j, shells 1.. and 101..
-struct Sheets {
+TEST(Welds, lead_from_sheet_to_sheet) {
+  // three sheets of 4 shells each over one another; the second is joined to both others
   std::vector<test::NodeSpec> nodes;
   std::vector<test::ShellSpec> shells;
-  Sheets() {
-    for (int sheet = 0; sheet < 2; ++sheet)
-      for (int j = 0; j <= 4; ++j)
-        for (int i = 0; i <= 4; ++i) nodes.push_back({1 + 1000 * sheet + i + 10 * j, Vec3(5.0 * i + sheet, 5.0 * j + sheet, 1.5 * sheet)});
-    for (int sheet = 0; sheet < 2; ++sheet)
-      for (int j = 0; j < 4; ++j)
-        for (int i = 0; i < 4; ++i) {
-          const std::int64_t corner = 1 + 1000 * sheet + i + 10 * j;
-          shells.push_back({1 + 100 * sheet + i + 4 * j, 1 + sheet, {corner, corner + 1, corner + 11, corner + 10}});
-        }
-  }
-  /// How many shells a click on the first sheet takes, across welds.
-  std::size_t across(const std::vector<test::ElementSpec>& welds, const References* references = nullptr) const {
-    const Model model = test::make_model(nodes, shells, welds);
-    const WeldedShells joined = find_welds(model, references, {});
-    return region(model, shells_at(model, NodeIndex(0), {}), {RegionBound::features, 30, {}, &joined}).size();
-  }
-};
-
-TEST(Welds, of_every_kind_join_sheets) {
-  using enum ElementClass;
-  Sheets sheets;
-  EXPECT_EQ(sheets.across({}), 16u);
-  EXPECT_EQ(sheets.across({{beam, 1, 9, {23, 1023}}}), 32u) << "with the sheets' own nodes";
-  EXPECT_EQ(sheets.across({{discrete, 1, 9, {23, 1023}}}), 32u);
-  EXPECT_EQ(sheets.across({{beam, 1, 9, {22, 24}}}), 16u) << "a stiffener";
-  EXPECT_EQ(sheets.across({{beam, 1, 9, {1, 1045}}}), 16u) << "too long for a weld";
-  EXPECT_EQ(sheets.across({{mass, 1, 9, {23, 1023}}}), 16u);
-  EXPECT_EQ(sheets.across({{beam, 1, 9, {22, 23, 1023}}}), 16u) << "a stiffener, turned towards the other sheet";
-  EXPECT_EQ(sheets.across({{beam, 1, 9, {23, 1023, 1045}}}), 32u) << "a weld, turned towards a node far away";
-  // nodes of their own, as welds in a file of their own have
-  sheets.nodes.push_back({5001, Vec3(11.2, 12.1, 0.2)});
-  sheets.nodes.push_back({5002, Vec3(11.2, 12.1, 1.4)});
-  sheets.nodes.push_back({5003, Vec3(11.2, 12.1, 9.0)});
-  EXPECT_EQ(sheets.across({{beam, 1, 9, {5001, 5002}}}), 32u);
-  EXPECT_EQ(sheets.across({{beam, 1, 9, {5001, 5003}}}), 16u) << "one end is nowhere near a sheet";
-  for (int k = 0; k < 8; ++k) {
-    const int round = k % 4;
-    sheets.nodes.push_back({6001 + k, Vec3(8.0 + 4 * (round == 1 || round == 2), 8.0 + 4 * (round > 1), k < 4 ? 0.1 : 1.45)});
-  }
-  EXPECT_EQ(sheets.across({{solid, 1, 9, {6001, 6002, 6003, 6004, 6005, 6006, 6007, 6008}}}), 32u);
-}
-
-TEST(Welds, of_constraints_join_sheets) {
-  const Sheets sheets;
-  const auto across = [&](const char* keyword, Referred referred, std::int64_t first, std::int64_t last) {
-    References references;
-    Referrer weld, list;
-    weld.keyword = keyword;
-    list.keyword = "SET_NODE_LIST";
-    list.id = 77;
-    list.defines = Referred::node_set;
-    list.group = "node";
-    const std::uint32_t card = references.add(weld);
-    references.add({.referred = referred, .first = first, .last = first, .referrer = card, .card = 30});
-    if (last != first) references.add({.referred = referred, .first = last, .last = last, .referrer = card, .card = 30});
-    const std::uint32_t set = references.add(list);
-    for (const std::int64_t id : {23, 1023})
-      references.add({.referred = Referred::node, .role = ReferenceRole::list, .first = id, .last = id, .referrer = set, .card = 120});
-    references.finish();
-    return sheets.across({}, &references);
+  for (int sheet = 0; sheet < 3; ++sheet)
+    for (int i = 0; i <= 4; ++i)
+      for (int j = 0; j <= 1; ++j) nodes.push_back({1 + 100 * sheet + i + 10 * j, Vec3(5.0 * i, 5.0 * j, 1.5 * sheet)});
+  for (int sheet = 0; sheet < 3; ++sheet)
+    for (int i = 0; i < 4; ++i) {
+      const std::int64_t a = 1 + 100 * sheet + i;
+      shells.push_back({a, 1 + sheet, {a, a + 1, a + 11, a + 10}});
+    }
+  const Model model = test::make_model(nodes, shells);
+  const connections::JoinedSheets joined({{ShellIndex(1), ShellIndex(5)}, {ShellIndex(10), ShellIndex(7)}},
+                                         {0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2});
+  const auto grown = [&](RegionBound bound, const connections::JoinedSheets* across) {
+    return region(model, {ShellIndex(0)}, {bound, 30, {}, across}).size();
   };
-  EXPECT_EQ(across("CONSTRAINED_SPOTWELD_ID", Referred::node, 23, 1023), 32u);
-  EXPECT_EQ(across("CONSTRAINED_RIVET", Referred::node, 23, 1023), 32u);
-  EXPECT_EQ(across("CONSTRAINED_GENERALIZED_WELD_SPOT", Referred::node_set, 77, 77), 32u);
-  EXPECT_EQ(across("CONSTRAINED_GENERALIZED_WELD_SPOT", Referred::node_set, 78, 78), 16u);
-  EXPECT_EQ(across("BOUNDARY_SPC_NODE", Referred::node, 23, 1023), 16u);
-}
-
-TEST(Welds, a_stiffener_over_a_crease_is_none) {
-  std::vector<test::NodeSpec> nodes;
-  std::vector<test::ShellSpec> shells;
-  for (int j = 0; j <= 2; ++j)
-    for (int i = 0; i <= 4; ++i) nodes.push_back({1 + i + 10 * j, Vec3(i, j, -std::abs(i - 2))});
-  for (int j = 0; j < 2; ++j)
-    for (int i = 0; i < 4; ++i) shells.push_back({1 + i + 4 * j, 1, {1 + i + 10 * j, 2 + i + 10 * j, 12 + i + 10 * j, 11 + i + 10 * j}});
-  const Model model = test::make_model(nodes, shells, {{ElementClass::beam, 1, 9, {12, 14}}});
-  const WeldedShells welds = find_welds(model, nullptr, {});
-  EXPECT_EQ(region(model, {ShellIndex(0)}, {RegionBound::features, 30, {}, &welds}).size(), 4u);
+  for (const RegionBound bound : {RegionBound::features, RegionBound::creases, RegionBound::part, RegionBound::piece}) {
+    EXPECT_EQ(grown(bound, &joined), 12u);
+    EXPECT_EQ(grown(bound, nullptr), 4u);
+  }
 }
 
 TEST(Welds, lead_over_junctions_too) {
@@ -329,7 +268,7 @@ TEST(Welds, lead_over_junctions_too) {
   const Model model = test::make_model(
       {{1, {0, 0, 0}}, {2, {1, 0, 0}}, {3, {1, 1, 0}}, {4, {0, 1, 0}}, {5, {2, 0, 0}}, {6, {2, 1, 0}}, {7, {1, 0, 1}}, {8, {1, 1, 1}}},
       {{1, 1, {1, 2, 3, 4}}, {2, 1, {2, 5, 6, 3}}, {3, 1, {2, 7, 8, 3}}});
-  const WeldedShells none = find_welds(model, nullptr, {});
+  const connections::JoinedSheets none;
   EXPECT_EQ(region(model, {ShellIndex(0)}, {RegionBound::features, 30, {}, &none}).size(), 3u);
   EXPECT_EQ(region(model, {ShellIndex(0)}, {RegionBound::features, 30, {}, nullptr}).size(), 1u);
 }

@@ -349,7 +349,7 @@ TEST(FreeEndings, carry_across_welds) {
         nodes.push_back({a, Vec3(10 * i, 10 * j, 5 * sheet)});
         if (i < kColumns && j < kRows) shells.push_back({a, 1 + sheet, {a, a + 1, a + 2 + kColumns, a + 1 + kColumns}});
       }
-  const Model model = test::make_model(nodes, shells);
+  const Model model = test::with_thickness(test::make_model(nodes, shells), 5);
   WeightOptions options = with(Profile::smooth);
   options.across_welds = true;
   const Weighed w(model, from_50(model), model.find_node(1 + 12 + 21 * 5), options);

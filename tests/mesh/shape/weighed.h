@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "mesh/connections/find_joined_sheets.h"
 #include "mesh/shape/weights.h"
 
 namespace prismesh::test {
@@ -18,12 +19,16 @@ inline mesh::NodeSet nodes_where(const mesh::Model& model, const std::function<b
   return nodes;
 }
 
-/// 0 outside the selection.
+/// 0 outside the selection. Without joined sheets these are the ones of the model.
 class Weighed {
  public:
   Weighed(const mesh::Model& model, const mesh::NodeSet& selection, std::optional<mesh::NodeIndex> grab,
-          const mesh::shape::WeightOptions& options) {
-    const Result<mesh::shape::Weights> result = mesh::shape::compute_weights(model, selection, grab, options);
+          const mesh::shape::WeightOptions& options)
+      : Weighed(model, selection, grab, options,
+                options.across_welds ? mesh::connections::find_joined_sheets(model, {}, {}) : mesh::connections::JoinedSheets()) {}
+  Weighed(const mesh::Model& model, const mesh::NodeSet& selection, std::optional<mesh::NodeIndex> grab,
+          const mesh::shape::WeightOptions& options, const mesh::connections::JoinedSheets& joined) {
+    const Result<mesh::shape::Weights> result = mesh::shape::compute_weights(model, selection, grab, options, {{}, {}, &joined});
     EXPECT_TRUE(result.has_value()) << result.error().text();
     if (result) weights = *result;
   }

@@ -23,8 +23,10 @@ struct Sheet {
   std::function<Vec3(int, int)> place;
 };
 
+using Welds = std::vector<test::ElementSpec>;
+
 /// Sheets that share no nodes; node (i, j) of sheet s has the id 10000 (s + 1) + 100 j + i.
-Model sheets(const std::vector<Sheet>& all) {
+Model sheets(const std::vector<Sheet>& all, double thickness = 0, const Welds& welds = {}) {
   std::vector<test::NodeSpec> nodes;
   std::vector<test::ShellSpec> shells;
   for (std::size_t s = 0; s < all.size(); ++s) {
@@ -35,7 +37,13 @@ Model sheets(const std::vector<Sheet>& all) {
       for (int i = 0; i < all[s].columns; ++i)
         shells.push_back({id(i, j), static_cast<std::int64_t>(s) + 1, {id(i, j), id(i + 1, j), id(i + 1, j + 1), id(i, j + 1)}});
   }
-  return make_model(nodes, shells);
+  Model model = make_model(nodes, shells, welds);
+  return thickness > 0 ? test::with_thickness(std::move(model), thickness) : model;
+}
+
+/// A beam between the nodes (i, j) of two sheets.
+test::ElementSpec weld(int sheet, int other, int i, int j) {
+  return {ElementClass::beam, 1, 9, {10000 * (sheet + 1) + 100 * j + i, 10000 * (other + 1) + 100 * j + i}};
 }
 
 WeightOptions carried() {
@@ -49,6 +57,11 @@ Sheet flat(double z, double shift = 0) {
   return {20, 20, [=](int i, int j) { return Vec3(i + shift, j + shift, z); }};
 }
 
+/// A disc of all sheets.
+NodeSet selection_of(const Model& model) {
+  return nodes_where(model, [](const Vec3& p) { return (p - Vec3(10, 10, p.z())).norm() <= 7; });
+}
+
 /// The weight of the first sheet at a place over it, bilinear within its square.
 double below(const Model& model, const Weighed& w, const Vec3& p) {
   const int i = std::min(19, static_cast<int>(p.x())), j = std::min(19, static_cast<int>(p.y()));
@@ -59,8 +72,8 @@ double below(const Model& model, const Weighed& w, const Vec3& p) {
 }
 
 TEST(WeightsAcrossWelds, carry_to_a_parallel_sheet_straight_across_the_gap) {
-  const Model model = sheets({flat(0), flat(1.2, 0.3)});
-  const NodeSet selection = nodes_where(model, [](const Vec3& p) { return (p - Vec3(10, 10, p.z())).norm() <= 7; });
+  const Model model = sheets({flat(0), flat(1.2, 0.3)}, 2);
+  const NodeSet selection = selection_of(model);
   const NodeIndex grab = model.find_node(10000 + 1010);
   const Weighed w(model, selection, grab, carried());
   EXPECT_EQ(w.weights.unreached, 0u);
@@ -80,16 +93,45 @@ TEST(WeightsAcrossWelds, carry_to_a_parallel_sheet_straight_across_the_gap) {
   for (const NodeIndex node : selection) EXPECT_EQ(left(node), model.position(node).z() == 0 ? w(node) : 0);
 }
 
-TEST(WeightsAcrossWelds, end_at_a_distance_that_scales_with_the_elements) {
+TEST(WeightsAcrossWelds, end_where_sheets_no_longer_touch) {
   for (const double scale : {1.0, 0.01, 250.0})
-    for (const double gap : {kWeldReach - 0.01, kWeldReach + 0.01}) {
+    for (const double gap : {0.95, 1.05}) {
       const auto scaled = [&](double z) { return Sheet{8, 8, [=](int i, int j) { return Vec3(scale * Vec3(i, j, z)); }}; };
-      const Model model = sheets({scaled(0), scaled(gap)});
+      const Model model = sheets({scaled(0), scaled(gap)}, scale / 1.2);
       const NodeSet all = nodes_where(model, [](const Vec3&) { return true; });
       const Weighed w(model, all, model.find_node(10000), carried());
-      EXPECT_EQ(w.weights.unreached, gap < kWeldReach ? 0u : 81u) << scale << ", " << gap;
+      EXPECT_EQ(w.weights.unreached, gap < 1 ? 0u : 81u) << scale << ", " << gap;
       for (const double weight : w.weights.weight) EXPECT_TRUE(weight == 0 || weight == 1);
     }
+}
+
+TEST(WeightsAcrossWelds, carry_from_a_welded_sheet_however_near_others_are) {
+  // the third sheet is nearer to the first than the second is, which is welded to it at one place
+  const Model model = sheets({flat(0), flat(1.9), flat(-0.5)}, 0, {weld(0, 1, 2, 2)});
+  const NodeSet selection = selection_of(model);
+  const Weighed w(model, selection, model.find_node(10000 + 1010), carried());
+  for (const NodeIndex node : selection) {
+    const Vec3& p = model.position(node);
+    if (p.z() != 0) {
+      EXPECT_NEAR(w(node), p.z() > 0 ? below(model, w, p) : 0, 1e-12);
+    }
+  }
+  // the weld is longer than a joint may be
+  const Model far = sheets({flat(0), flat(2.1)}, 0, {weld(0, 1, 2, 2)});
+  EXPECT_GT(Weighed(far, selection_of(far), far.find_node(10000 + 1010), carried()).weights.unreached, 100u);
+}
+
+TEST(WeightsAcrossWelds, leave_what_is_joined_elsewhere_but_far_off) {
+  // the second sheet is welded to the first where it begins, and rises from there
+  const Sheet rising{20, 20, [](int i, int j) { return Vec3(i, j, 0.5 + 0.4 * i); }};
+  const Model model = sheets({flat(0), rising}, 0, {weld(0, 1, 0, 10)});
+  const auto reached = [&](double from) {
+    const NodeSet selection = nodes_where(model, [&](const Vec3& p) { return p.x() >= from && p.x() <= from + 4; });
+    return Weighed(model, selection, model.find_node(10000 + 1002 + static_cast<int>(from)), carried()).weights.unreached == 0;
+  };
+  EXPECT_TRUE(reached(0));
+  EXPECT_TRUE(reached(2)) << "beside the weld";
+  EXPECT_FALSE(reached(12));
 }
 
 TEST(WeightsAcrossWelds, end_at_a_distance_that_scales_with_the_closest_element) {
@@ -97,7 +139,11 @@ TEST(WeightsAcrossWelds, end_at_a_distance_that_scales_with_the_closest_element)
   const Model model = sheets({{12, 4, [](int i, int j) { return Vec3(i <= 8 ? i : 8 + 4 * (i - 8), j, 0); }},
                               {4, 4, [](int i, int j) { return Vec3(i, j, 2.5); }},
                               {4, 4, [](int i, int j) { return Vec3(13 + 2 * i, j, 2.5); }}});
-  const Weighed w(model, nodes_where(model, [](const Vec3&) { return true; }), model.find_node(10000), carried());
+  std::vector<std::uint32_t> numbers;  // of the sheets: 48, 16 and 16 shells
+  for (std::uint32_t s = 0; s < 80; ++s) numbers.push_back(s < 48 ? 0 : s < 64 ? 1 : 2);
+  const connections::JoinedSheets joined(
+      {{ShellIndex(std::size_t{0}), ShellIndex(std::size_t{48})}, {ShellIndex(std::size_t{0}), ShellIndex(std::size_t{64})}}, numbers);
+  const Weighed w(model, nodes_where(model, [](const Vec3&) { return true; }), model.find_node(10000), carried(), joined);
   EXPECT_EQ(w.weights.unreached, 25u);
   EXPECT_EQ(w(model.find_node(20000)), 0) << "over the small shells";
   EXPECT_EQ(w(model.find_node(30000)), 1) << "over the large ones";
@@ -105,8 +151,9 @@ TEST(WeightsAcrossWelds, end_at_a_distance_that_scales_with_the_closest_element)
 
 TEST(WeightsAcrossWelds, carry_a_standing_sheet_whole_with_its_foot) {
   // the second sheet stands on the first, half an element above it; what is high up follows the foot
-  const Model model = sheets({flat(0), {20, 12, [](int i, int j) { return Vec3(i, 10, 0.5 + j); }}});
-  const NodeSet selection = nodes_where(model, [](const Vec3& p) { return (p - Vec3(10, 10, p.z())).norm() <= 7; });
+  const Model model =
+      sheets({flat(0), {20, 12, [](int i, int j) { return Vec3(i, 10, 0.5 + j); }}}, 0, {{ElementClass::beam, 1, 9, {11010, 20010}}});
+  const NodeSet selection = selection_of(model);
   const Weighed w(model, selection, model.find_node(10000 + 1010), carried());
   EXPECT_EQ(w.weights.unreached, 0u);
   for (int j = 0; j <= 12; ++j)
@@ -115,8 +162,8 @@ TEST(WeightsAcrossWelds, carry_a_standing_sheet_whole_with_its_foot) {
 }
 
 TEST(WeightsAcrossWelds, carry_from_piece_to_piece) {
-  const Model model = sheets({flat(0), flat(1), flat(2), flat(3), flat(9)});
-  const NodeSet selection = nodes_where(model, [](const Vec3& p) { return (p - Vec3(10, 10, p.z())).norm() <= 7; });
+  const Model model = sheets({flat(0), flat(1), flat(2), flat(3), flat(9)}, 1);
+  const NodeSet selection = selection_of(model);
   const Weighed w(model, selection, model.find_node(30000 + 1010), carried());
   for (int j = 4; j <= 16; ++j)
     for (int i = 6; i <= 14; ++i)
@@ -137,7 +184,7 @@ TEST(WeightsAcrossWelds, carry_to_lone_nodes) {
 }
 
 TEST(WeightsAcrossWelds, leave_the_constant_profile_as_it_is) {
-  const Model model = sheets({flat(0), flat(1)});
+  const Model model = sheets({flat(0), flat(1)}, 1);
   const NodeSet selection = nodes_where(model, [](const Vec3& p) { return p.x() < 8; });
   WeightOptions options = carried();
   options.falloff.profile = Profile::constant;

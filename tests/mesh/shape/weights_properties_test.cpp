@@ -48,7 +48,7 @@ Model shuffled_sheets(unsigned seed) {
     std::shuffle(nodes.begin(), nodes.end(), random);
     std::shuffle(shells.begin(), shells.end(), random);
   }
-  return make_model(nodes, shells);
+  return test::with_thickness(make_model(nodes, shells), 1);
 }
 
 NodeSet disc(const Model& model) {
@@ -90,6 +90,7 @@ TEST(WeightsProperties, stay_finite_where_coordinates_are_no_numbers) {
   const double odd[] = {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
                         -std::numeric_limits<double>::infinity(), 1e300, -1e200};
   const Model model = shuffled_sheets(5);
+  const connections::JoinedSheets joined = connections::find_joined_sheets(model, {}, {});
   const NodeSet selection = disc(model);
   for (const double number : odd)
     for (std::size_t which = 0; which < selection.size(); which += 23)
@@ -108,7 +109,7 @@ TEST(WeightsProperties, stay_finite_where_coordinates_are_no_numbers) {
             options.free_ends = std::array{FreeEnds::held, FreeEnds::weighted, FreeEnds::rigid}[which % 3];
             if (along) options.falloff.along = Vec3(1, 0.5, 0.1);
             for (const std::optional<NodeIndex> grab : {std::optional<NodeIndex>(), std::optional(selection[which])}) {
-              const Result<Weights> result = compute_weights(broken, selection, grab, options);
+              const Result<Weights> result = compute_weights(broken, selection, grab, options, {{}, {}, &joined});
               if (!result) {
                 EXPECT_FALSE(result.error().message.empty());
                 continue;

@@ -1,4 +1,4 @@
-// Which shells selections may use: those of parts that aren't hidden.
+// Which shells selections and searches may use: those of parts that aren't hidden.
 #pragma once
 
 #include <cstddef>
@@ -7,7 +7,7 @@
 
 #include "mesh/model/model.h"
 
-namespace prismesh::mesh::select {
+namespace prismesh::mesh {
 
 /// One entry for each part, not 0 where it is hidden; empty: no part is hidden.
 using OutOfSight = std::span<const std::uint8_t>;
@@ -20,4 +20,4 @@ inline bool in_sight(const Model& model, ShellIndex shell, OutOfSight out_of_sig
   return !part.valid() || out_of_sight[part.value] == 0;
 }
 
-}  // namespace prismesh::mesh::select
+}  // namespace prismesh::mesh

@@ -1,0 +1,17 @@
+#include "mesh/document/joined_sheets.h"
+
+#include <vector>
+
+#include "mesh/connections/find_joined_sheets.h"
+#include "mesh/document/deck_relations.h"
+
+namespace prismesh::mesh::document {
+
+connections::JoinedSheets joined_sheets(const Generation& generation, OutOfSight out_of_sight) {
+  std::vector<NodeSet> cards;
+  for (const JoiningCard& card : generation.relations->dependents.joining_cards)
+    if (card.joins_sheets) cards.push_back(card.nodes);
+  return connections::find_joined_sheets(generation.model, cards, out_of_sight);
+}
+
+}  // namespace prismesh::mesh::document
