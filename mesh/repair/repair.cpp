@@ -279,7 +279,11 @@ Result<Repaired> repair_piece(const WholeRepair& whole, std::size_t piece, const
   for (const LocalShell bad : bad_shells(patch, state.history, quality::Grade::warn)) state.history.was_bad[bad.value] = 1;
   const int rounds = run_rounds(strict, state);
   if (state.progress.stopped && !is_cancelled(*state.progress.stopped)) return fail(*state.progress.stopped);
-  if (!(badness_of(strict, state) < bad_before)) give_up(work, patch_before, history_before);
+  if (!(badness_of(strict, state) < bad_before)) {
+    give_up(work, patch_before, history_before);
+    // On what stays as it was, no single operation was tried yet.
+    heal_failing_shells(strict, state);
+  }
   judge_all(exact);
   Repaired repaired = result_of(exact, state, pairs_before);
   repaired.rounds = rounds;
