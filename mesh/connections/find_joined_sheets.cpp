@@ -94,15 +94,25 @@ void join(const Model& model, const NodeSet& ends, const ShellsAtEnds& shells_at
     }
 }
 
+void join_tied(const Model& model, const NodeOnSheet& tied, OutOfSight out_of_sight, std::vector<JoinedSheets::Pair>& pairs) {
+  if (!in_sight(model, tied.shell, out_of_sight)) return;
+  if (!spatial::ShellTree(model, {tied.shell}).closest(model.position(tied.node), tied.reach)) return;
+  for (const ShellIndex shell : model.adjacency->shells_of(tied.node))
+    if (in_sight(model, shell, out_of_sight)) pairs.emplace_back(shell, tied.shell);
+}
+
 }  // namespace
 
-JoinedSheets find_joined_sheets(const Model& model, std::span<const NodeSet> cards, OutOfSight out_of_sight) {
+JoinedSheets find_joined_sheets(const Model& model, std::span<const NodeSet> cards, OutOfSight out_of_sight,
+                                std::span<const NodeOnSheet> on_sheets) {
   std::vector<NodeSet> joints;
   add_elements(model, joints);
   joints.insert(joints.end(), cards.begin(), cards.end());
   const ShellsAtEnds shells_at_ends(model, out_of_sight, joints);
   std::vector<JoinedSheets::Pair> pairs;
   for (const NodeSet& ends : joints) join(model, ends, shells_at_ends, pairs);
+  for (const NodeOnSheet& each : on_sheets)
+    if (each.tied) join_tied(model, each, out_of_sight, pairs);
   std::vector<std::uint32_t> sheet_numbers = number_sheets(model, out_of_sight);
   const std::vector<JoinedSheets::Pair> touching = find_touching(model, sheet_numbers, pairs, out_of_sight);
   pairs.insert(pairs.end(), touching.begin(), touching.end());

@@ -17,7 +17,7 @@ using connections::NodeOnSheet;
 struct JoiningCard {
   std::uint32_t referrer = 0;
   NodeSet nodes;
-  bool joins_sheets = false;  ///< a spot weld or a rivet
+  bool joins_sheets = false;  ///< a spot weld, a rivet, or a rigid body of few nodes
 };
 
 struct JoinedNode {

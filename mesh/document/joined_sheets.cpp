@@ -8,10 +8,11 @@
 namespace prismesh::mesh::document {
 
 connections::JoinedSheets joined_sheets(const Generation& generation, OutOfSight out_of_sight) {
+  const Dependents& dependents = generation.relations->dependents;
   std::vector<NodeSet> cards;
-  for (const JoiningCard& card : generation.relations->dependents.joining_cards)
+  for (const JoiningCard& card : dependents.joining_cards)
     if (card.joins_sheets) cards.push_back(card.nodes);
-  return connections::find_joined_sheets(generation.model, cards, out_of_sight);
+  return connections::find_joined_sheets(generation.model, cards, out_of_sight, dependents.on_sheets);
 }
 
 }  // namespace prismesh::mesh::document

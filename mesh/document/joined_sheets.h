@@ -7,7 +7,8 @@
 
 namespace prismesh::mesh::document {
 
-/// By elements and by the cards of the deck that join sheets. Costs the elements, and the shells if an end is no node of a shell.
+/// By elements, by the cards of the deck that join sheets, and by tied nodes. Costs the elements, and the shells if an end is no node of a
+/// shell.
 connections::JoinedSheets joined_sheets(const Generation& generation, OutOfSight out_of_sight);
 
 }  // namespace prismesh::mesh::document
