@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "base/supervisor.h"
 #include "drivers/settings/settings.h"
 #include "kiosk/calibrator.h"
 #include "kiosk/display/headless.h"
@@ -85,6 +86,7 @@ int run_app(const AppOptions& options) {
   const Result<void> done = run(options);
   if (done) return 0;
   std::fprintf(stderr, "%s\n", done.error().text().c_str());
+  supervisor::wait_before_failing();
   return 1;
 }
 

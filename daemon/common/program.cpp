@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "base/log.h"
+#include "base/supervisor.h"
 
 namespace prismesh::daemon {
 
@@ -17,6 +18,7 @@ int run(const Program& program, int argc, char** argv) {
   const Result<int> status = program.serve(given);
   if (!status) {
     std::fprintf(stderr, "%s\n", status.error().text().c_str());
+    supervisor::wait_before_failing();
     return 1;
   }
   logging::info("ended");

@@ -101,6 +101,22 @@ for signal in KILL STOP; do
 done
 check "the edits go on" session edit '{"edit":"lift","distance":-2}'
 check "and are saved" session save
+check "the saved deck keeps its group and rights" bash -c 'said=$(stat -c "%G %a" /var/lib/prismesh/models/sample.k); echo "$said"; [ "$said" = "prismesh 664" ]'
 check "no unit has failed" bash -c '[ -z "$(systemctl list-units --failed --no-legend "prismesh*")" ]'
+
+# --- what can't start says so, and isn't started again and again ---
+restarts() { systemctl show -P NRestarts "$1"; }
+printf '[eye_trackr]\n' >>/etc/prismesh/prismesh.toml
+mkdir -p /etc/systemd/system/prismesh-kiosk.service.d
+printf '[Service]\nExecStart=\nExecStart=/usr/bin/prismesh-kiosk --runtime-dir /run/prismesh --fullscreen\n' >/etc/systemd/system/prismesh-kiosk.service.d/headless.conf
+systemctl daemon-reload
+before_deviced=$(restarts prismesh-deviced) before_kiosk=$(restarts prismesh-kiosk)
+systemctl kill -s KILL prismesh-deviced prismesh-kiosk
+sleep 4
+for service in prismesh-deviced prismesh-kiosk; do
+  before=before_${service#prismesh-}
+  more=$(($(restarts $service) - ${!before}))
+  if [ "$more" -le 4 ]; then ok "$service, which can't start, was started $more times in 4 s"; else bad "$service, which can't start, was started $more times in 4 s"; fi
+done
 [ $failed -eq 0 ] && echo "all is well"
 exit 0
