@@ -282,7 +282,8 @@ Result<Reached> repair_in_passes(const Document& document, const Repair& edit, R
     ShellSet shells;
     std::set_union(scope->begin(), scope->end(), clusters.shells.begin(), clusters.shells.end(), std::back_inserter(shells));
     Result<Pass> pass = repair_writable({at, edit, options, shells, clusters.nodes}, progress);
-    if (!pass && (progress.pass == 0 || is_cancelled(pass.error()))) return fail(pass.error());
+    // A stop must end as its replay does, which has no other place to stop at: so the passes before can't be kept either.
+    if (!pass && (progress.pass == 0 || is_cancelled(pass.error()) || progress.is_told_to_stop())) return fail(pass.error());
     if (!pass) return reached;
     for (const auto& [shell, held] : pass->frozen.shells)
       if (shell.value < document.current().model.shell_count()) reached.ever_frozen.shells.insert({shell, held});
@@ -290,12 +291,14 @@ Result<Reached> repair_in_passes(const Document& document, const Repair& edit, R
       reached.repaired.bad_before = pass->repaired.bad_before;
       reached.repaired.clusters_before = pass->repaired.clusters_before;
     }
-    const bool is_last = pass->repaired.change.empty() || pass->repaired.stopped;
-    if (pass->repaired.change.empty())
+    const bool is_stopped = pass->repaired.stopped.has_value();
+    if (pass->repaired.change.empty()) {
       add_reasons(std::move(*pass), reached);
-    else if (!add_pass(document, std::move(*pass), reached))
       return reached;
-    if (is_last) return reached;
+    }
+    const Result<void> added = add_pass(document, std::move(*pass), reached);
+    if (!added && is_stopped) return fail(stopped_too_early(added.error()));
+    if (!added || is_stopped) return reached;
     at = with_current(document, reached.generation);
   }
 }
