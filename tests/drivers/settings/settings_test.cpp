@@ -110,6 +110,16 @@ TEST(Settings, refuses_errors_with_line_and_remedy) {
        "station.toml:2: eye_tracker.port must be a device's whole path, like \"/dev/serial/by-id/..\""},
       {"[eye_tracker]\nudp_port = 65536\n", "station.toml:2: eye_tracker.udp_port is 65536; it must be from 1 to 65535"},
       {"[eye_tracker]\nudp_port = 4242.0\n", "station.toml:2: eye_tracker.udp_port must be a whole number"},
+      {"[display]\nscreen = \"wayland\"\n",
+       "station.toml:2: display.screen has no \"wayland\"; the nearest is \"bare\" of usual, x11, bare"},
+      {"[display]\nmode = \"1920x\"\n", "station.toml:2: display.mode must be a mode in quotes, like \"1920x1080\" or \"1920x1080@60\""},
+      {"[display]\nmode = \"1920x1080@\"\n",
+       "station.toml:2: display.mode must be a mode in quotes, like \"1920x1080\" or \"1920x1080@60\""},
+      {"[display]\nmode = \"1920x1080@nan\"\n",
+       "station.toml:2: display.mode must be a mode in quotes, like \"1920x1080\" or \"1920x1080@60\""},
+      {"[display]\nmode = \"-1x5\"\n", "station.toml:2: display.mode must be a mode in quotes, like \"1920x1080\" or \"1920x1080@60\""},
+      {"[display]\nconnector = 1\n",
+       "station.toml:2: display.connector must be a connector's name in quotes, like \"DP-1\" (prismesh doctor lists them)"},
       {"[display]\nlatency_ms = 1000\n", "station.toml:2: display.latency_ms is 1000; it must be from 0 to 200 ms"},
       {"[eye_tracker]\nlatency_ms = -1\n", "station.toml:2: eye_tracker.latency_ms is -1; it must be from 0 to 500 ms"},
       {"[eye_tracker]\nnoise_mm = nan\n", "station.toml:2: eye_tracker.noise_mm must be a number"},
@@ -131,6 +141,16 @@ TEST(Settings, refuses_errors_with_line_and_remedy) {
       {"[display]\nprofile = \"\xff\"\n", "station.toml:2: "},
   };
   for (const auto& [text, message] : cases) EXPECT_EQ(error_of(text).substr(0, std::string_view(message).size()), message) << text;
+}
+
+TEST(Settings, choose_a_screen_and_its_mode) {
+  const StationSettings settings = *parse_settings(
+      "[display]\nscreen = \"bare\"\nconnector = \"DP-1\"\nmode = \"1920x1200@59.95\"\nconsole_switching = true\n", "station.toml");
+  EXPECT_EQ(settings.display.screen, ScreenKind::bare);
+  EXPECT_EQ(settings.display.connector, "DP-1");
+  EXPECT_EQ(settings.display.mode, (ModeSetting{1920, 1200, 59.95}));
+  EXPECT_TRUE(settings.display.console_switching);
+  EXPECT_EQ(parse_settings("[display]\nmode = \"\"\n", "station.toml")->display.mode, ModeSetting());
 }
 
 TEST(Settings, accepts_the_limits_themselves) {
