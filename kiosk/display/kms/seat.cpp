@@ -35,11 +35,10 @@ Result<std::unique_ptr<Seat>> Seat::open() {
                 fmt::format("no seat manager gives it to this program ({}): on Debian install seatd, and add this user to the "
                             "group video; or start in an X11 session (DISPLAY)",
                             std::strerror(errno)));
-  // The manager gives the seat by its first message.
-  if (!seat->active_) {
-    pollfd watched{libseat_get_fd(seat->seat_), POLLIN, 0};
-    if (::poll(&watched, 1, kFirstAnswerMs) > 0) libseat_dispatch(seat->seat_, 0);
-  }
+  // The manager gives the seat by its first message, which may have come with the answer already.
+  libseat_dispatch(seat->seat_, 0);
+  pollfd watched{libseat_get_fd(seat->seat_), POLLIN, 0};
+  if (!seat->active_ && ::poll(&watched, 1, kFirstAnswerMs) > 0) libseat_dispatch(seat->seat_, 0);
   if (!seat->active_) return fail("the screen", "another program has it: end that program, or switch to its console and away again");
   seat->name_ = libseat_seat_name(seat->seat_);
   return seat;

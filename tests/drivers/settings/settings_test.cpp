@@ -34,12 +34,14 @@ std::string all_of(const StationSettings& settings) {
   const EyeTrackerSettings& t = settings.eye_tracker;
   const PrismServoSettings& s = settings.prism_servo;
   std::ostringstream text;
-  text << settings.display.profile << '|' << settings.display.latency_ms << '|' << int(t.driver) << '|' << t.simulated << '|' << t.port
-       << '|' << t.baud << '|' << int(t.dialect) << '|' << t.polled << '|' << t.udp_port << '|' << t.latency_ms << '|' << t.noise_mm << '|'
-       << t.offset_mm.x() << ' ' << t.offset_mm.y() << ' ' << t.offset_mm.z() << '|' << t.eye_separation_mm << '|' << t.motion << '|'
-       << int(s.driver) << '|' << s.simulated << '|' << s.port << '|' << s.baud << '|' << s.id << '|' << s.travel_mm_per_turn << '|'
-       << s.reversed << '|' << s.zero_ticks << '|' << s.travel_mm << '|' << s.speed_mm_s << '|' << s.lag_ms << '|' << settings.hand.mouse
-       << '|' << settings.document.history_mb << '|' << settings.document.hang_s;
+  text << settings.display.profile << '|' << settings.display.latency_ms << '|' << int(settings.display.screen)
+       << settings.display.connector << '|' << settings.display.mode.width << ' ' << settings.display.mode.height << ' '
+       << settings.display.mode.refresh_hz << '|' << settings.display.console_switching << '|' << int(t.driver) << '|' << t.simulated << '|'
+       << t.port << '|' << t.baud << '|' << int(t.dialect) << '|' << t.polled << '|' << t.udp_port << '|' << t.latency_ms << '|'
+       << t.noise_mm << '|' << t.offset_mm.x() << ' ' << t.offset_mm.y() << ' ' << t.offset_mm.z() << '|' << t.eye_separation_mm << '|'
+       << t.motion << '|' << int(s.driver) << '|' << s.simulated << '|' << s.port << '|' << s.baud << '|' << s.id << '|'
+       << s.travel_mm_per_turn << '|' << s.reversed << '|' << s.zero_ticks << '|' << s.travel_mm << '|' << s.speed_mm_s << '|' << s.lag_ms
+       << '|' << settings.hand.mouse << '|' << settings.document.history_mb << '|' << settings.document.hang_s;
   return text.str();
 }
 
@@ -47,6 +49,10 @@ constexpr char kEveryKey[] = R"(
 [display]
 profile = "anaglyph"
 latency_ms = 6.5
+screen = "bare"
+connector = "DP-1"
+mode = "1920x1080@60"
+console_switching = true
 [hand]
 mouse = "middle-orbit"
 [document]
@@ -83,7 +89,7 @@ TEST(Settings, an_empty_file_keeps_every_default) { EXPECT_EQ(all_of(parsed(""))
 
 TEST(Settings, every_key_is_read) {
   EXPECT_EQ(all_of(parsed(kEveryKey)),
-            "anaglyph|6.5|1|1|/dev/serial/by-id/usb-tracker|9600|0|1|4243|12.5|0.5|1 210.5 -15|61|lean|"
+            "anaglyph|6.5|2DP-1|1920 1080 60|1|1|1|/dev/serial/by-id/usb-tracker|9600|0|1|4243|12.5|0.5|1 210.5 -15|61|lean|"
             "1|1|/dev/serial/by-id/usb-servo|57600|7|4|1|1000|1.5|6|20|middle-orbit|64|30");
 }
 
@@ -111,7 +117,7 @@ TEST(Settings, refuses_errors_with_line_and_remedy) {
       {"[eye_tracker]\nudp_port = 65536\n", "station.toml:2: eye_tracker.udp_port is 65536; it must be from 1 to 65535"},
       {"[eye_tracker]\nudp_port = 4242.0\n", "station.toml:2: eye_tracker.udp_port must be a whole number"},
       {"[display]\nscreen = \"wayland\"\n",
-       "station.toml:2: display.screen has no \"wayland\"; the nearest is \"bare\" of usual, x11, bare"},
+       "station.toml:2: display.screen has no \"wayland\"; the nearest is \"usual\" of usual, x11, bare"},
       {"[display]\nmode = \"1920x\"\n", "station.toml:2: display.mode must be a mode in quotes, like \"1920x1080\" or \"1920x1080@60\""},
       {"[display]\nmode = \"1920x1080@\"\n",
        "station.toml:2: display.mode must be a mode in quotes, like \"1920x1080\" or \"1920x1080@60\""},
