@@ -54,7 +54,7 @@ const std::vector<Module>& modules() {
       {"daemon/deviced", {"ipc/device", "daemon/common", "drivers/eye_tracker/configured", "drivers/prism_servo/dynamixel"}},
 
       {"kiosk/display", {"drivers/display"}},
-      {"kiosk/display/kms", {"kiosk/display"}},
+      {"kiosk/display/kms", {"kiosk/display", "drivers/settings"}},
       {"kiosk/display/x11", {"kiosk/display"}},
       {"kiosk/stereo", {"ipc/device", "ipc/model"}},
       {"kiosk/render", {"kiosk/stereo"}},
