@@ -7,8 +7,8 @@
 #include "drivers/settings/settings.h"
 #include "kiosk/calibrator.h"
 #include "kiosk/display/headless.h"
-#include "kiosk/display/x11.h"
 #include "kiosk/headless_kiosk.h"
+#include "kiosk/open_window.h"
 #include "kiosk/render/offscreen.h"
 #include "kiosk/station.h"
 #include "kiosk/windowed_kiosk.h"
@@ -16,8 +16,23 @@
 namespace prismesh::kiosk {
 namespace {
 
-Result<void> run_in_window(const AppOptions& options, const StationOptions& what) {
-  Result<std::unique_ptr<display::Window>> window = display::open_x11_window({"Prismesh", options.size, options.fullscreen});
+WindowOptions window_options(const AppOptions& options, const drivers::settings::DisplaySettings& settings) {
+  WindowOptions window;
+  window.screen = options.screen.value_or(settings.screen);
+  window.title = "Prismesh";
+  window.size = options.size;
+  window.fullscreen = options.fullscreen;
+  window.connector = settings.connector;
+  window.mode = {settings.mode.width, settings.mode.height};
+  window.refresh_hz = settings.mode.refresh_hz;
+  window.may_switch_consoles = settings.console_switching;
+  window.tell = [](const std::string& sentence) { std::fprintf(stderr, "%s\n", sentence.c_str()); };
+  return window;
+}
+
+Result<void> run_in_window(const WindowOptions& options, const StationOptions& what) {
+  MonotonicClock clock;
+  Result<std::unique_ptr<display::Window>> window = open_window(options, clock);
   if (!window) return fail(window.error());
   Result<std::unique_ptr<Station>> station = Station::create(what);
   if (!station) return fail(station.error());
@@ -25,14 +40,15 @@ Result<void> run_in_window(const AppOptions& options, const StationOptions& what
 }
 
 /// Calibrates the display that the window covers.
-Result<void> run_calibration(const AppOptions& options, const StationOptions& what) {
+Result<void> run_calibration(const AppOptions& options, const WindowOptions& where, const StationOptions& what) {
   Result<SaveTo> save_to = usual_place(options.config);
   if (!save_to) return fail(save_to.error());
   if (!what.profile.stereo())
     return fail("--calibrate",
                 "the profile \"" + what.profile.name +
                     "\" shows no depth, so there is nothing to calibrate: name the kind of display, for example --profile prism-mask");
-  Result<std::unique_ptr<display::Window>> window = display::open_x11_window({"Prismesh", options.size, options.fullscreen});
+  MonotonicClock clock;
+  Result<std::unique_ptr<display::Window>> window = open_window(where, clock);
   if (!window) return fail(window.error());
   Result<std::unique_ptr<Station>> station = Station::create(what);
   if (!station) return fail(station.error());
@@ -76,8 +92,9 @@ Result<void> run(const AppOptions& options) {
   what.panel_latency_ms = settings->display.latency_ms;
   what.follows_others = options.follow;
   what.trace = options.trace;
-  if (options.calibrate) return run_calibration(options, what);
-  return options.headless_frames > 0 ? run_headless(options, what) : run_in_window(options, what);
+  if (options.headless_frames > 0) return run_headless(options, what);
+  const WindowOptions window = window_options(options, settings->display);
+  return options.calibrate ? run_calibration(options, window, what) : run_in_window(window, what);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "drivers/settings/settings.h"
 #include "kiosk/display/window.h"
 #include "mesh/model/model.h"
 
@@ -16,10 +17,11 @@ struct AppOptions {
   std::optional<std::filesystem::path> deck;         ///< opened at the start
   display::PixelSize size{1600, 900};
   bool fullscreen = false;
-  std::optional<std::string> profile;       ///< a name or a profile file; empty: the settings', or else mono
-  std::optional<mesh::Vec3> fixed_eyes_mm;  ///< between the eyes; goes before what a tracker says
-  int headless_frames = 0;                  ///< > 0: no window; the program writes this number of pictures to `shots` and ends
-  double pace_seconds = 0;                  ///< between those pictures
+  std::optional<drivers::settings::ScreenKind> screen;  ///< empty: the settings'
+  std::optional<std::string> profile;                   ///< a name or a profile file; empty: the settings', or else mono
+  std::optional<mesh::Vec3> fixed_eyes_mm;              ///< between the eyes; goes before what a tracker says
+  int headless_frames = 0;                              ///< > 0: no window; the program writes this number of pictures to `shots` and ends
+  double pace_seconds = 0;                              ///< between those pictures
   std::filesystem::path shots;
   bool calibrate = false;  ///< run the display's calibration instead
   bool follow = false;     ///< move together with other kiosks that follow

@@ -36,13 +36,16 @@ bool parse_point(const std::string& text, prismesh::mesh::Vec3& point) {
 
 int run_interactive(int argc, char** argv) {
   AppOptions options;
-  std::string size = "1600x900", eye, profile, config, runtime_dir, deck, shots;
+  std::string size = "1600x900", eye, profile, config, runtime_dir, deck, shots, screen;
   bool window = false;
   CLI::App app("The picture of a Prismesh station: shows the model server's document and edits it by hand.");
   app.add_option("--runtime-dir", runtime_dir, "Folder of the daemons' sockets")->option_text("DIR");
   app.add_option("--config", config, "Settings that go before those of the system and the user (docs/settings.md)")->option_text("FILE");
   auto* in_window = app.add_flag("--window", window, "Open in a window (the default)");
   app.add_flag("--fullscreen", options.fullscreen, "Cover the display")->excludes(in_window);
+  app.add_option("--screen", screen, "What to show the picture on: x11, bare (no display server), usual (the settings', else usual)")
+      ->option_text("usual|x11|bare")
+      ->check(CLI::IsMember({"usual", "x11", "bare"}));
   app.add_option("--size", size, "Size of the window or the pictures (1600x900)")->option_text("WxH");
   app.add_option("--profile", profile, "Display profile: a name or a file (the settings', else mono)")->option_text("NAME|FILE");
   app.add_option("--eye", eye, "Fixed point between the eyes, mm from the screen's centre; no tracker is followed")->option_text("X,Y,Z");
@@ -79,6 +82,8 @@ int run_interactive(int argc, char** argv) {
   }
   if (!runtime_dir.empty()) options.runtime_dir = runtime_dir;
   if (!config.empty()) options.config = config;
+  using prismesh::drivers::settings::ScreenKind;
+  if (!screen.empty()) options.screen = screen == "x11" ? ScreenKind::x11 : screen == "bare" ? ScreenKind::bare : ScreenKind::usual;
   if (!profile.empty()) options.profile = profile;
   if (!deck.empty()) options.deck = std::filesystem::absolute(deck);
   options.shots = shots;

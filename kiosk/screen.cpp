@@ -18,7 +18,7 @@ Result<void> Screen::lay_out() {
   tools::PanelLayout layout{size_, [this](const tools::Command& command) { editor_.panel_command(command); }};
   gui_.layout(size_, static_cast<double>(now - std::exchange(laid_out_ns_, now)) * 1e-9, [&] {
     panels_.build(editor_.context(), mouse_, layout);
-    if (pointer_ && editor_.profile().stereo()) panels::draw_pointer(pointer_->x(), pointer_->y());
+    if (pointer_) panels::draw_pointer(pointer_->x(), pointer_->y());
   });
   editor_.set_covered_width(panels_.covered_width());
   for (const std::function<void()>& action : layout.actions) editor_.panel_action(action);

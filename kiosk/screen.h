@@ -23,7 +23,7 @@ class Screen {
   /// Lays the panels out and does what the user asked for. Needed between press and release of a button or a key, so that a quick press
   /// isn't lost.
   Result<void> lay_out();
-  /// `pointer`: drawn into the picture of a stereo profile, where the display's own would lie on the woven picture.
+  /// `pointer`: drawn into the picture, where the display has none of its own or that would lie on the woven picture.
   /// `moving`: draws for speed, see render::Picture.
   Result<void> draw(unsigned framebuffer, const std::optional<tools::Pixel>& pointer, bool moving);
 

@@ -74,8 +74,8 @@ Result<void> WindowedKiosk::take(const display::WindowEvent& event) {
     const bool was_on_panel = gestures_.position() && station_.screen.gui().on_panel(gestures_.position()->x(), gestures_.position()->y());
     station_.screen.gui().feed(event);
     gestures(gestures_.moved(*moved));
-    // Panels answer to the pointer, and a stereo picture carries it.
-    if (was_on_panel || station_.screen.gui().on_panel(moved->x, moved->y) || station_.editor.profile().stereo()) dirty_ = true;
+    // Panels answer to the pointer, and some pictures carry it.
+    if (was_on_panel || station_.screen.gui().on_panel(moved->x, moved->y) || draws_pointer()) dirty_ = true;
     return {};
   }
   if (const auto* button = std::get_if<display::ButtonChanged>(&event)) return take_button(*button);
@@ -181,7 +181,8 @@ Result<void> WindowedKiosk::show() {
   window_.show_pointer(!station_.editor.profile().stereo());
   const auto& shown = station_.editor.context().shown.snapshot;
   shown_moving_ = moving() && shown && shown->shell_count() > kManyShells;
-  if (Result<void> drawn = station_.screen.draw(0, gestures_.position(), shown_moving_); !drawn) return drawn;
+  const std::optional<tools::Pixel> pointer = draws_pointer() ? gestures_.position() : std::nullopt;
+  if (Result<void> drawn = station_.screen.draw(0, pointer, shown_moving_); !drawn) return drawn;
   if (station_.eyes.watches()) window_.finish();
   station_.eyes.drawn(station_.eyes.watches() ? window_.last_refresh_ns() : std::nullopt);
   window_.present();

@@ -25,6 +25,8 @@ class WindowedKiosk {
   void do_command(const tools::Command& command);
   Result<void> settle();
   void find_place() { station_.place(window_.monitor(), window_.position()); }
+  /// The display's own pointer isn't woven, and some displays have none.
+  bool draws_pointer() const { return station_.editor.profile().stereo() || !window_.has_pointer(); }
   /// The view or something in it is about to change again.
   bool moving() const { return gestures_.dragging() || station_.clock.now_ns() < wheel_rest_ns_; }
   /// The view moves to another by itself.

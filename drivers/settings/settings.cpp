@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -153,6 +154,42 @@ Key name_or_file(std::string_view name, std::string& to, const fs::path& folder,
           }};
 }
 
+/// A mode like "1920x1080" or "1920x1080@60"; empty: the monitor's own.
+Key mode(std::string_view name, ModeSetting& to) {
+  return {name, [&to](const toml::node& node) -> Problem {
+            const Problem wrong = "must be a mode in quotes, like \"1920x1080\" or \"1920x1080@60\"";
+            const auto* value = node.as_string();
+            if (value == nullptr) return wrong;
+            ModeSetting read;
+            const std::string& text = value->get();
+            const char* const end = text.data() + text.size();
+            if (!text.empty()) {
+              const auto [x, width_error] = std::from_chars(text.data(), end, read.width);
+              if (width_error != std::errc() || x == end || *x != 'x') return wrong;
+              const auto [at, height_error] = std::from_chars(x + 1, end, read.height);
+              if (height_error != std::errc() || read.width < 1 || read.height < 1) return wrong;
+              if (at != end) {
+                const auto [rest, rate_error] = std::from_chars(at + 1, end, read.refresh_hz);
+                if (*at != '@' || rate_error != std::errc() || rest != end || !(read.refresh_hz >= 1 && read.refresh_hz <= 1000))
+                  return wrong;
+              }
+            }
+            to = read;
+            return {};
+          }};
+}
+
+/// The name of a socket of the graphics card.
+Key connector_name(std::string_view name, std::string& to) {
+  return {name, [&to](const toml::node& node) -> Problem {
+            const auto* value = node.as_string();
+            if (value == nullptr || value->get().find('\0') != std::string::npos)
+              return "must be a connector's name in quotes, like \"DP-1\" (prismesh doctor lists them)";
+            to = value->get();
+            return {};
+          }};
+}
+
 Key remember(Key key, SourceLine& place, const std::string& file) {
   return {key.name, [read = std::move(key.read), &place, &file](const toml::node& node) {
             place = {file, static_cast<long>(node.source().begin.line)};
@@ -196,7 +233,10 @@ class Reader {
     const std::array<Section, 5> sections{
         Section{"display",
                 {name_or_file("profile", settings_.display.profile, folder_, "a profile's name or file in quotes, like \"prism-mask\""),
-                 number("latency_ms", settings_.display.latency_ms, 0, 200, " ms")}},
+                 number("latency_ms", settings_.display.latency_ms, 0, 200, " ms"),
+                 choice("screen", {"usual", "x11", "bare"}, [this](std::size_t i) { settings_.display.screen = ScreenKind(i); }),
+                 connector_name("connector", settings_.display.connector), mode("mode", settings_.display.mode),
+                 flag("console_switching", settings_.display.console_switching)}},
         Section{"hand", {name_or_file("mouse", settings_.hand.mouse, folder_, "a layout's name or file in quotes, like \"right-orbit\"")}},
         Section{"document",
                 {whole("history_mb", settings_.document.history_mb, 16, 1'048'576, " MB"),

@@ -51,9 +51,28 @@ struct PrismServoSettings {
   bool operator==(const PrismServoSettings&) const = default;
 };
 
+/// What the kiosk shows its picture on.
+enum class ScreenKind : std::uint8_t {
+  usual,  ///< an X11 session where there is one, else the bare screen
+  x11,
+  bare,  ///< kernel mode setting, without a display server
+};
+
+/// A monitor's mode; 0: its own.
+struct ModeSetting {
+  int width = 0;
+  int height = 0;
+  double refresh_hz = 0;
+  bool operator==(const ModeSetting&) const = default;
+};
+
 struct DisplaySettings {
   std::string profile = "prism-mask";  ///< a built-in name, or a profile file (relative to the settings file)
   double latency_ms = 10;              ///< from a row's scan-out to its light, in the panel's electronics and pixels
+  ScreenKind screen = ScreenKind::usual;
+  std::string connector;           ///< of the bare screen, "DP-1"; empty: the first with a monitor
+  ModeSetting mode;                ///< of the bare screen
+  bool console_switching = false;  ///< on the bare screen Ctrl+Alt+F1 and so on show a text console
 };
 
 /// How the user works with the kiosk.

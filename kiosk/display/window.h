@@ -1,5 +1,6 @@
 // Interface to a window: shows the finished picture and gives the input of mouse and keyboard. There is one implementation for each kind of
-// display: an X11 window (x11.h). Coordinates are pixels of the picture, x right, y down, from its upper left corner.
+// display: an X11 window (x11/x11_window.h) and the bare screen (kms/bare_window.h); open_window.h chooses. Coordinates are pixels of the
+// picture, x right, y down, from its upper left corner.
 #pragma once
 
 #include <array>
@@ -130,6 +131,8 @@ class Window {
   virtual void present() = 0;
   /// When the display began its newest refresh, CLOCK_MONOTONIC; empty if it doesn't report it.
   virtual std::optional<std::int64_t> last_refresh_ns() = 0;
+  /// Whether the display has a pointer of its own. Otherwise every picture draws one.
+  virtual bool has_pointer() const { return true; }
   /// Hides or shows the display's own pointer. It isn't woven, so stereo pictures draw their own.
   virtual void show_pointer(bool shown) = 0;
   virtual void set_fullscreen(bool fullscreen) = 0;

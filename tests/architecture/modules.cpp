@@ -54,6 +54,8 @@ const std::vector<Module>& modules() {
       {"daemon/deviced", {"ipc/device", "daemon/common", "drivers/eye_tracker/configured", "drivers/prism_servo/dynamixel"}},
 
       {"kiosk/display", {"drivers/display"}},
+      {"kiosk/display/kms", {"kiosk/display", "drivers/settings"}},
+      {"kiosk/display/x11", {"kiosk/display"}},
       {"kiosk/stereo", {"ipc/device", "ipc/model"}},
       {"kiosk/render", {"kiosk/stereo"}},
       {"kiosk/tools", {"kiosk/display", "kiosk/render"}},
@@ -69,7 +71,7 @@ const std::vector<Module>& modules() {
       {"kiosk/calibration", {"kiosk/display", "kiosk/render"}},
       {"kiosk",
        {"kiosk/tools/files", "kiosk/tools/comparison", "kiosk/tools/selection", "kiosk/tools/shaping", "kiosk/tools/quality",
-        "kiosk/tools/mesh_operations", "kiosk/tools/parts", "kiosk/tools/view", "kiosk/calibration", "drivers/settings"}},
+        "kiosk/tools/mesh_operations", "kiosk/tools/parts", "kiosk/tools/view", "kiosk/calibration", "kiosk/display/kms", "kiosk/display/x11", "drivers/settings"}},
 
       {"cli", {"ipc/device", "ipc/model", "drivers/settings"}},
   };

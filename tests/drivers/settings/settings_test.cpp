@@ -34,12 +34,14 @@ std::string all_of(const StationSettings& settings) {
   const EyeTrackerSettings& t = settings.eye_tracker;
   const PrismServoSettings& s = settings.prism_servo;
   std::ostringstream text;
-  text << settings.display.profile << '|' << settings.display.latency_ms << '|' << int(t.driver) << '|' << t.simulated << '|' << t.port
-       << '|' << t.baud << '|' << int(t.dialect) << '|' << t.polled << '|' << t.udp_port << '|' << t.latency_ms << '|' << t.noise_mm << '|'
-       << t.offset_mm.x() << ' ' << t.offset_mm.y() << ' ' << t.offset_mm.z() << '|' << t.eye_separation_mm << '|' << t.motion << '|'
-       << int(s.driver) << '|' << s.simulated << '|' << s.port << '|' << s.baud << '|' << s.id << '|' << s.travel_mm_per_turn << '|'
-       << s.reversed << '|' << s.zero_ticks << '|' << s.travel_mm << '|' << s.speed_mm_s << '|' << s.lag_ms << '|' << settings.hand.mouse
-       << '|' << settings.document.history_mb << '|' << settings.document.hang_s;
+  text << settings.display.profile << '|' << settings.display.latency_ms << '|' << int(settings.display.screen)
+       << settings.display.connector << '|' << settings.display.mode.width << ' ' << settings.display.mode.height << ' '
+       << settings.display.mode.refresh_hz << '|' << settings.display.console_switching << '|' << int(t.driver) << '|' << t.simulated << '|'
+       << t.port << '|' << t.baud << '|' << int(t.dialect) << '|' << t.polled << '|' << t.udp_port << '|' << t.latency_ms << '|'
+       << t.noise_mm << '|' << t.offset_mm.x() << ' ' << t.offset_mm.y() << ' ' << t.offset_mm.z() << '|' << t.eye_separation_mm << '|'
+       << t.motion << '|' << int(s.driver) << '|' << s.simulated << '|' << s.port << '|' << s.baud << '|' << s.id << '|'
+       << s.travel_mm_per_turn << '|' << s.reversed << '|' << s.zero_ticks << '|' << s.travel_mm << '|' << s.speed_mm_s << '|' << s.lag_ms
+       << '|' << settings.hand.mouse << '|' << settings.document.history_mb << '|' << settings.document.hang_s;
   return text.str();
 }
 
@@ -47,6 +49,10 @@ constexpr char kEveryKey[] = R"(
 [display]
 profile = "anaglyph"
 latency_ms = 6.5
+screen = "bare"
+connector = "DP-1"
+mode = "1920x1080@60"
+console_switching = true
 [hand]
 mouse = "middle-orbit"
 [document]
@@ -83,7 +89,7 @@ TEST(Settings, an_empty_file_keeps_every_default) { EXPECT_EQ(all_of(parsed(""))
 
 TEST(Settings, every_key_is_read) {
   EXPECT_EQ(all_of(parsed(kEveryKey)),
-            "anaglyph|6.5|1|1|/dev/serial/by-id/usb-tracker|9600|0|1|4243|12.5|0.5|1 210.5 -15|61|lean|"
+            "anaglyph|6.5|2DP-1|1920 1080 60|1|1|1|/dev/serial/by-id/usb-tracker|9600|0|1|4243|12.5|0.5|1 210.5 -15|61|lean|"
             "1|1|/dev/serial/by-id/usb-servo|57600|7|4|1|1000|1.5|6|20|middle-orbit|64|30");
 }
 
@@ -110,6 +116,16 @@ TEST(Settings, refuses_errors_with_line_and_remedy) {
        "station.toml:2: eye_tracker.port must be a device's whole path, like \"/dev/serial/by-id/..\""},
       {"[eye_tracker]\nudp_port = 65536\n", "station.toml:2: eye_tracker.udp_port is 65536; it must be from 1 to 65535"},
       {"[eye_tracker]\nudp_port = 4242.0\n", "station.toml:2: eye_tracker.udp_port must be a whole number"},
+      {"[display]\nscreen = \"wayland\"\n",
+       "station.toml:2: display.screen has no \"wayland\"; the nearest is \"usual\" of usual, x11, bare"},
+      {"[display]\nmode = \"1920x\"\n", "station.toml:2: display.mode must be a mode in quotes, like \"1920x1080\" or \"1920x1080@60\""},
+      {"[display]\nmode = \"1920x1080@\"\n",
+       "station.toml:2: display.mode must be a mode in quotes, like \"1920x1080\" or \"1920x1080@60\""},
+      {"[display]\nmode = \"1920x1080@nan\"\n",
+       "station.toml:2: display.mode must be a mode in quotes, like \"1920x1080\" or \"1920x1080@60\""},
+      {"[display]\nmode = \"-1x5\"\n", "station.toml:2: display.mode must be a mode in quotes, like \"1920x1080\" or \"1920x1080@60\""},
+      {"[display]\nconnector = 1\n",
+       "station.toml:2: display.connector must be a connector's name in quotes, like \"DP-1\" (prismesh doctor lists them)"},
       {"[display]\nlatency_ms = 1000\n", "station.toml:2: display.latency_ms is 1000; it must be from 0 to 200 ms"},
       {"[eye_tracker]\nlatency_ms = -1\n", "station.toml:2: eye_tracker.latency_ms is -1; it must be from 0 to 500 ms"},
       {"[eye_tracker]\nnoise_mm = nan\n", "station.toml:2: eye_tracker.noise_mm must be a number"},
@@ -131,6 +147,16 @@ TEST(Settings, refuses_errors_with_line_and_remedy) {
       {"[display]\nprofile = \"\xff\"\n", "station.toml:2: "},
   };
   for (const auto& [text, message] : cases) EXPECT_EQ(error_of(text).substr(0, std::string_view(message).size()), message) << text;
+}
+
+TEST(Settings, choose_a_screen_and_its_mode) {
+  const StationSettings settings = *parse_settings(
+      "[display]\nscreen = \"bare\"\nconnector = \"DP-1\"\nmode = \"1920x1200@59.95\"\nconsole_switching = true\n", "station.toml");
+  EXPECT_EQ(settings.display.screen, ScreenKind::bare);
+  EXPECT_EQ(settings.display.connector, "DP-1");
+  EXPECT_EQ(settings.display.mode, (ModeSetting{1920, 1200, 59.95}));
+  EXPECT_TRUE(settings.display.console_switching);
+  EXPECT_EQ(parse_settings("[display]\nmode = \"\"\n", "station.toml")->display.mode, ModeSetting());
 }
 
 TEST(Settings, accepts_the_limits_themselves) {

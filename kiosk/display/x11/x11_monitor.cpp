@@ -1,4 +1,4 @@
-#include "kiosk/display/monitor_x11.h"
+#include "kiosk/display/x11/x11_monitor.h"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 #include <X11/Xatom.h>
 #include <X11/extensions/Xrandr.h>
 
-namespace prismesh::kiosk::display {
+namespace prismesh::kiosk::display::x11 {
 namespace {
 
 struct ScreenResources {
@@ -143,4 +143,4 @@ std::optional<Monitor> monitor_at(Display* display, ::Window root, int x, int y,
   return best;
 }
 
-}  // namespace prismesh::kiosk::display
+}  // namespace prismesh::kiosk::display::x11

@@ -6,7 +6,7 @@
 
 #include "kiosk/display/window.h"
 
-namespace prismesh::kiosk::display {
+namespace prismesh::kiosk::display::x11 {
 
 struct X11Options {
   std::string title;
@@ -18,4 +18,4 @@ struct X11Options {
 /// display (says what to set), a display without EGL or OpenGL ES 3.1.
 Result<std::unique_ptr<Window>> open_x11_window(const X11Options& options);
 
-}  // namespace prismesh::kiosk::display
+}  // namespace prismesh::kiosk::display::x11

@@ -1,4 +1,4 @@
-#include "kiosk/display/x11.h"
+#include "kiosk/display/x11/x11_window.h"
 
 #include <array>
 #include <cstdlib>
@@ -12,40 +12,12 @@
 #include <X11/Xlib.h>
 #include <X11/Xutil.h>
 #include <X11/extensions/Xrandr.h>
-#include <X11/keysym.h>
 
-#include "kiosk/display/monitor_x11.h"
+#include "kiosk/display/key_symbols.h"
+#include "kiosk/display/x11/x11_monitor.h"
 
-namespace prismesh::kiosk::display {
+namespace prismesh::kiosk::display::x11 {
 namespace {
-
-Key key_from(KeySym symbol) {
-  if (symbol >= XK_a && symbol <= XK_z) return static_cast<Key>('A' + (symbol - XK_a));
-  if (symbol >= XK_A && symbol <= XK_Z) return static_cast<Key>('A' + (symbol - XK_A));
-  if (symbol >= XK_0 && symbol <= XK_9) return static_cast<Key>('0' + (symbol - XK_0));
-  if (symbol >= XK_KP_0 && symbol <= XK_KP_9) return static_cast<Key>('0' + (symbol - XK_KP_0));
-  if (symbol >= XK_F1 && symbol <= XK_F12) return static_cast<Key>(static_cast<int>(Key::f1) + static_cast<int>(symbol - XK_F1));
-  switch (symbol) {
-    case XK_space: return Key::space;
-    case XK_Escape: return Key::escape;
-    case XK_Return:
-    case XK_KP_Enter: return Key::enter;
-    case XK_Tab:
-    case XK_ISO_Left_Tab: return Key::tab;
-    case XK_BackSpace: return Key::backspace;
-    case XK_Delete: return Key::remove;
-    case XK_Insert: return Key::insert;
-    case XK_Left: return Key::left;
-    case XK_Right: return Key::right;
-    case XK_Up: return Key::up;
-    case XK_Down: return Key::down;
-    case XK_Home: return Key::home;
-    case XK_End: return Key::end;
-    case XK_Page_Up: return Key::page_up;
-    case XK_Page_Down: return Key::page_down;
-    default: return Key::none;
-  }
-}
 
 Modifiers modifiers_from(unsigned state) { return {(state & ShiftMask) != 0, (state & ControlMask) != 0, (state & Mod1Mask) != 0}; }
 
@@ -320,10 +292,10 @@ void X11Window::translate_key(XKeyEvent& event, bool down, std::vector<WindowEve
   }
   // The symbol without modifiers identifies the key: Shift+1 is still the digit.
   KeySym plain = XLookupKeysym(&event, 0);
-  if (key_from(plain) == Key::none) plain = symbol;
+  if (key_from_symbol(static_cast<std::uint32_t>(plain)) == Key::none) plain = symbol;
   const Modifiers modifiers = modifiers_from(event.state);
   bool& held = held_[event.keycode & 0xffu];
-  out.emplace_back(KeyChanged{key_from(plain), down, down && held, modifiers});
+  out.emplace_back(KeyChanged{key_from_symbol(static_cast<std::uint32_t>(plain)), down, down && held, modifiers});
   held = down;
   const bool printable = length > 0 && static_cast<unsigned char>(text[0]) >= 0x20 && text[0] != 0x7f;
   if (down && printable && !modifiers.ctrl && !modifiers.alt)
@@ -369,4 +341,4 @@ Result<std::unique_ptr<Window>> open_x11_window(const X11Options& options) {
   return window;
 }
 
-}  // namespace prismesh::kiosk::display
+}  // namespace prismesh::kiosk::display::x11
