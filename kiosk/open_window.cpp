@@ -20,9 +20,8 @@ Result<std::unique_ptr<display::Window>> open_window(const WindowOptions& option
   bare.tell = options.tell;
   Result<std::unique_ptr<display::Window>> window = display::kms::open_bare_window(bare, clock);
   if (!window && options.screen == ScreenKind::usual)
-    return fail(
-        window.error().file,
-        window.error().message + ". DISPLAY names no X server either; --headless-frames N --shots DIR draws pictures without a screen");
+    return fail("", "no display: DISPLAY names no X server, and the bare screen can't be used (" + window.error().text() +
+                        "); --headless-frames N --shots DIR draws pictures without a display");
   return window;
 }
 

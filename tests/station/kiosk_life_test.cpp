@@ -15,9 +15,20 @@ namespace {
 const std::string kKiosk = (test::programs_folder() / "prismesh-kiosk").string();
 
 TEST(KioskLifeTest, without_a_display_it_says_so_and_ends_with_1) {
-  Process kiosk({kKiosk}, {{"DISPLAY", ""}});
+  Process kiosk({kKiosk, "--screen", "x11"}, {{"DISPLAY", ""}});
   EXPECT_EQ(kiosk.wait_for_exit(), 1);
   EXPECT_EQ(kiosk.standard_error().rfind("no display: set DISPLAY", 0), 0u) << kiosk.standard_error();
+}
+
+TEST(KioskLifeTest, without_a_right_to_the_screen_it_says_so_and_ends_with_1) {
+  Process bare({kKiosk, "--screen", "bare"}, {{"DISPLAY", ""}, {"LIBSEAT_BACKEND", "none"}});
+  EXPECT_EQ(bare.wait_for_exit(), 1);
+  EXPECT_EQ(bare.standard_error().rfind("the screen: no seat manager gives it to this program", 0), 0u) << bare.standard_error();
+  Process usual({kKiosk}, {{"DISPLAY", ""}, {"LIBSEAT_BACKEND", "none"}});
+  EXPECT_EQ(usual.wait_for_exit(), 1);
+  EXPECT_EQ(
+      usual.standard_error().rfind("no display: DISPLAY names no X server, and the bare screen can't be used (the screen: no seat", 0), 0u)
+      << usual.standard_error();
 }
 
 TEST(KioskLifeTest, a_display_that_does_not_answer_is_named) {
