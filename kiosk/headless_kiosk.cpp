@@ -26,7 +26,7 @@ HeadlessKiosk::HeadlessKiosk(const AppOptions& options, Station& station, const 
 
 /// Whether the picture shows what was asked for, or nothing more will come.
 bool HeadlessKiosk::settled() const {
-  const tools::ModelLink& link = station_.link;
+  const link::ModelLink& link = station_.link;
   if (!link.connected() || !link.state() || !link.busy().empty() || !link.up_to_date()) return false;
   if ((options_.deck || link.state()->open) && link.snapshot() == nullptr) return false;
   // Without a daemon, or with a tracker that sees nobody, a picture in mono is all there is.

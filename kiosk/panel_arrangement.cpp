@@ -6,24 +6,24 @@
 #include <imgui.h>
 
 #include "kiosk/editor_keys.h"
+#include "kiosk/input/key_table.h"
 #include "kiosk/panels/document_panel.h"
 #include "kiosk/panels/key_panels.h"
 #include "kiosk/panels/message_panels.h"
 #include "kiosk/panels/question_box.h"
 #include "kiosk/panels/warnings_panel.h"
 #include "kiosk/tool_list.h"
-#include "kiosk/tools/key_table.h"
-#include "kiosk/tools/tool_set.h"
+#include "kiosk/toolkit/tool_set.h"
 
 namespace prismesh::kiosk {
 namespace {
 
 using panels::kGrid;
 using panels::kMargin;
-using tools::Cover;
-using tools::PanelLayout;
-using tools::Tool;
-using tools::ToolContext;
+using panels::PanelLayout;
+using toolkit::Cover;
+using toolkit::Tool;
+using toolkit::ToolContext;
 
 panels::DocumentFacts document_facts(const ToolContext& context) {
   const ipc::SnapshotInfo& info = context.shown.snapshot->info();
@@ -79,7 +79,7 @@ void right_panel(ToolContext& context, PanelLayout& layout) {
   ImGui::End();
 }
 
-void cover(ToolContext& context, std::span<const tools::MouseBinding> mouse, PanelLayout& layout) {
+void cover(ToolContext& context, std::span<const input::MouseBinding> mouse, PanelLayout& layout) {
   switch (context.open.cover) {
     case Cover::none: break;
     case Cover::help: panels::help_panel(key_bindings(), mouse, layout.picture); break;
@@ -92,10 +92,10 @@ void cover(ToolContext& context, std::span<const tools::MouseBinding> mouse, Pan
 }
 
 void notice(ToolContext& context, PanelLayout& layout) {
-  tools::Notices& notices = context.notices;
+  notices::Notices& notices = context.notices;
   if (notices.empty()) return;
-  const tools::Command list = command_of(EditorCommand::deck_warnings);
-  const panels::NoticePlace place{context.shown.snapshot != nullptr, layout.bottom, tools::binding_of(kDocumentKeys, list)};
+  const input::Command list = command_of(EditorCommand::deck_warnings);
+  const panels::NoticePlace place{context.shown.snapshot != nullptr, layout.bottom, input::binding_of(kDocumentKeys, list)};
   switch (panels::notice_panel({notices.front(), notices.count() - 1}, layout.picture, place)) {
     case panels::NoticeReply::none: break;
     case panels::NoticeReply::list_warnings: layout.ask(list); break;
@@ -109,9 +109,9 @@ void notice(ToolContext& context, PanelLayout& layout) {
 
 }  // namespace
 
-void PanelArrangement::build(ToolContext& context, std::span<const tools::MouseBinding> mouse, PanelLayout& layout) {
-  const tools::ModelLink& link = context.link;
-  const tools::OpenPanels& open = context.open;
+void PanelArrangement::build(ToolContext& context, std::span<const input::MouseBinding> mouse, PanelLayout& layout) {
+  const link::ModelLink& link = context.link;
+  const toolkit::OpenPanels& open = context.open;
   const bool document = context.shown.snapshot != nullptr;
   const Tool* asking = context.tools.asking();
   const std::string guidance = context.tools.guidance();
@@ -137,8 +137,8 @@ void PanelArrangement::build(ToolContext& context, std::span<const tools::MouseB
 /// The question, or else the dialog that is open.
 void PanelArrangement::build_box(ToolContext& context, PanelLayout& layout) {
   Tool* asking = context.tools.asking();
-  const tools::OpenPanels::Dialog dialog =
-      context.link.connected() && asking == nullptr ? context.open.dialog : tools::OpenPanels::Dialog{};
+  const toolkit::OpenPanels::Dialog dialog =
+      context.link.connected() && asking == nullptr ? context.open.dialog : toolkit::OpenPanels::Dialog{};
   const bool opened = std::exchange(shown_dialog_, dialog) != dialog;
   if (dialog.owner != nullptr) return dialog.owner->draw_dialog(dialog.kind, opened, layout);
   if (!context.link.connected() || asking == nullptr) return;

@@ -5,6 +5,8 @@
 
 namespace prismesh::kiosk::tools::comparison {
 
+using notices::Notice;
+
 void BeforeAfter::toggle() {
   if (pair_) {
     showing_before_ = !showing_before_;

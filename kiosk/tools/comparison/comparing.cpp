@@ -180,7 +180,7 @@ void Comparing::took_field(Pane pane, const ipc::GetField& asked, const ipc::Ans
   const auto* made = std::get_if<ipc::FieldMade>(&answer);
   if (made == nullptr) {
     if (const auto* failed = std::get_if<ipc::Failed>(&answer))
-      view.field_problem = was_stopped(*failed) ? "stopped; choose it again to see it" : ipc::error_from(*failed).text();
+      view.field_problem = link::was_stopped(*failed) ? "stopped; choose it again to see it" : ipc::error_from(*failed).text();
     view.made.reset();
     if (Result<void> cleared = renderer_.set_field(pane, {}, true); !cleared) failed_ = cleared.error();
     return;

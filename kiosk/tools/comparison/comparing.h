@@ -6,16 +6,16 @@
 #include <string>
 #include <vector>
 
+#include "kiosk/link/model_link.h"
 #include "kiosk/render/renderer.h"
 #include "kiosk/tools/comparison/compare_wish.h"
 #include "kiosk/tools/comparison/legend_facts.h"
-#include "kiosk/tools/model_link.h"
 
 namespace prismesh::kiosk::tools::comparison {
 
 class Comparing {
  public:
-  Comparing(ModelLink& link, render::Renderer& renderer, Trace trace) : link_(link), renderer_(renderer), trace_(trace) {}
+  Comparing(link::ModelLink& link, render::Renderer& renderer, notices::Trace trace) : link_(link), renderer_(renderer), trace_(trace) {}
 
   const CompareWish& wish() const { return wish_; }
   void set(const CompareWish& wish);
@@ -73,9 +73,9 @@ class Comparing {
   std::string words_of(const std::optional<std::uint64_t>& generation) const;
   std::vector<CompareFacts::Caption> captions(double shift) const;
 
-  ModelLink& link_;
+  link::ModelLink& link_;
   render::Renderer& renderer_;
-  Trace trace_;
+  notices::Trace trace_;
   CompareWish wish_;
   std::optional<std::uint64_t> glance_;
   bool panel_open_ = false;

@@ -8,6 +8,10 @@
 namespace prismesh::kiosk::tools::files {
 namespace {
 
+using link::ModelLink;
+using panels::Question;
+using panels::Reply;
+
 std::string file_name(const std::filesystem::path& path) { return path.filename().string(); }
 
 Question::Choice choice(Reply reply, std::string label, char key) {

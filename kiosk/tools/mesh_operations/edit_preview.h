@@ -5,13 +5,13 @@
 #include <optional>
 #include <string>
 
-#include "kiosk/tools/model_link.h"
+#include "kiosk/link/model_link.h"
 
 namespace prismesh::kiosk::tools::mesh_operations {
 
 class EditPreview {
  public:
-  explicit EditPreview(ModelLink& link) : link_(link) {}
+  explicit EditPreview(link::ModelLink& link) : link_(link) {}
 
   struct Previewed {
     std::uint64_t number = 0;  ///< counts up with each question
@@ -25,7 +25,7 @@ class EditPreview {
   const std::optional<Previewed>& previewed() const { return previewed_; }
 
  private:
-  ModelLink& link_;
+  link::ModelLink& link_;
   std::optional<Previewed> previewed_;
   std::uint64_t number_ = 0;
 };

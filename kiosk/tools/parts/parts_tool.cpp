@@ -6,14 +6,16 @@
 #include <vector>
 
 #include "kiosk/render/palette.h"
-#include "kiosk/tools/edits.h"
+#include "kiosk/toolkit/edits.h"
+#include "kiosk/toolkit/picking.h"
 #include "kiosk/tools/parts/file_expression.h"
 #include "kiosk/tools/parts/parts_keys.h"
-#include "kiosk/tools/picking.h"
 #include "mesh/select/expression.h"
 
 namespace prismesh::kiosk::tools::parts {
 namespace {
+
+using toolkit::Pointer;
 
 using mesh::document::VisibilityAction;
 
@@ -29,7 +31,7 @@ bool all_in(const std::vector<std::int64_t>& ids, const std::vector<std::int64_t
 
 }  // namespace
 
-std::span<const KeyBinding> keys() { return kKeys; }
+std::span<const input::KeyBinding> keys() { return kKeys; }
 
 std::string_view PartsTool::name() const { return kName; }
 
@@ -51,11 +53,11 @@ void PartsTool::set(const std::optional<std::string>& on, VisibilityAction actio
   mesh::document::SetParts edit;
   edit.action = action;
   edit.on = on;
-  send(context_, std::move(edit));
+  toolkit::send(context_, std::move(edit));
 }
 
 std::optional<mesh::PartIndex> PartsTool::part_at(const Pointer& pointer) const {
-  const auto shell = shell_at(context_, pointer);
+  const auto shell = toolkit::shell_at(context_, pointer);
   const auto& shown = context_.shown.snapshot;
   if (!shell || shell->value >= shown->shell_count()) return std::nullopt;
   const mesh::PartIndex part = shown->shell_part(shell->value);
@@ -116,7 +118,7 @@ std::size_t PartsTool::list_rows() const {
   return context_.shown.snapshot->info().parts.size() + (files > 1 ? files : 0);
 }
 
-void PartsTool::draw_list(PanelLayout& layout) {
+void PartsTool::draw_list(panels::PanelLayout& layout) {
   for (const SetVisibility& wanted : part_list(facts(), layout)) layout.ask([this, wanted] { set(wanted.on, wanted.action); });
 }
 

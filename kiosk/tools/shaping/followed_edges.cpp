@@ -7,7 +7,7 @@
 namespace prismesh::kiosk::tools::shaping {
 
 std::vector<std::array<mesh::Vec3, 2>> lines_of(const ipc::FollowedEdges& edges, const ipc::SnapshotView& snapshot,
-                                                const RemoteDrag* drag) {
+                                                const link::RemoteDrag* drag) {
   const bool moved = drag != nullptr && drag->begun() && drag->frame().sequence > 0;
   const auto place = [&](std::uint32_t node) -> mesh::Vec3 {
     if (!moved) return snapshot.position(node);

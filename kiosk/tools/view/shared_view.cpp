@@ -6,7 +6,7 @@ namespace prismesh::kiosk::tools::view {
 namespace {
 
 /// What is told to other kiosks doesn't depend on the number of views here.
-double size_of(const PictureView& view) { return view.two_views ? kTwoViewsSize : 1; }
+double size_of(const toolkit::PictureView& view) { return view.two_views ? toolkit::kTwoViewsSize : 1; }
 
 }  // namespace
 
