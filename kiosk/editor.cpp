@@ -58,8 +58,8 @@ Result<void> Editor::follow() {
   if (!std::exchange(context_.follow_soon, false) && link.changes() == link_changes_) return {};
   link_changes_ = link.changes();
   ++context_.changes;
-  notices_.follow(link.document_number());
-  for (Notice& notice : link.take_notices()) notices_.take(std::move(notice));
+  notices_.follow(link.document.number());
+  for (Notice& notice : link.notices.take()) notices_.take(std::move(notice));
   for (const auto& tool : tools_.all())
     if (Result<void> prepared = tool->prepare(); !prepared) return prepared;
   take_newest();
@@ -71,10 +71,10 @@ Result<void> Editor::follow() {
 /// The newest state becomes the one that is shown.
 void Editor::take_newest() {
   toolkit::ShownModel& shown = context_.shown;
-  const auto& next = context_.link.snapshot();
+  const auto& next = context_.link.document.snapshot();
   if (next == shown.snapshot) return;
-  const bool other_document = next && (!shown.snapshot || shown.document_number != context_.link.document_number());
-  shown.document_number = context_.link.document_number();
+  const bool other_document = next && (!shown.snapshot || shown.document_number != context_.link.document.number());
+  shown.document_number = context_.link.document.number();
   shown.snapshot = next;
   // What stays within comfortable depth is what is shown now.
   if (const stereo::Box box = context_.renderer.bounds(); !box.empty()) context_.view.view.bounds = stereo::sphere_around(box);
@@ -128,7 +128,7 @@ void Editor::toggle_cover(Cover cover) { toolkit::set_cover(context_, context_.o
 
 /// What lies on top goes first. `keep`: what a repair has reached.
 void Editor::cancel(bool keep) {
-  if (context_.link.can_stop()) return context_.link.stop(keep);
+  if (context_.link.connection.progress().can_stop()) return context_.link.connection.stop(keep);
   if (tools_.dragging()) return cancel_gesture();
   if (Tool* asking = tools_.asking(); asking != nullptr)
     asking->reply(panels::Reply::cancel);

@@ -42,7 +42,7 @@ panels::DocumentFacts document_facts(const ToolContext& context) {
     facts.largest_target_size = first ? part.target_size : std::max(facts.largest_target_size, part.target_size);
     first = false;
   }
-  if (const auto& state = context.link.state()) {
+  if (const auto& state = context.link.document.state()) {
     facts.length_unit_guessed = state->length_unit_guessed;
     facts.target_size_guessed = state->target_size_guessed;
   }
@@ -56,7 +56,7 @@ void left_panel(ToolContext& context, PanelLayout& layout) {
   panels::document_head(document_facts(context));
   for (const auto& tool : context.tools.all()) tool->draw_document_section(layout);
   // What is pulled needs the room.
-  if (!context.tools.pulling()) panels::history_section({context.link.history_bytes(), context.link.history_cap()});
+  if (!context.tools.pulling()) panels::history_section({context.link.document.history_bytes(), context.link.document.history_cap()});
   panels::document_foot();
   ImGui::End();
 }
@@ -86,7 +86,7 @@ void cover(ToolContext& context, std::span<const input::MouseBinding> mouse, Pan
     case Cover::menu: panels::menu_panel(key_bindings(), layout); break;
     case Cover::warnings:
       if (const auto& shown = context.shown.snapshot)
-        panels::warnings_panel(context.link.warnings(), shown->info().document, layout.picture);
+        panels::warnings_panel(context.link.document.warnings(), shown->info().document, layout.picture);
       break;
   }
 }
@@ -110,7 +110,8 @@ void notice(ToolContext& context, PanelLayout& layout) {
 }  // namespace
 
 void PanelArrangement::build(ToolContext& context, std::span<const input::MouseBinding> mouse, PanelLayout& layout) {
-  const link::ModelLink& link = context.link;
+  const link::Connection& connection = context.link.connection;
+  const link::ServerProgress& progress = connection.progress();
   const toolkit::OpenPanels& open = context.open;
   const bool document = context.shown.snapshot != nullptr;
   const Tool* asking = context.tools.asking();
@@ -120,14 +121,14 @@ void PanelArrangement::build(ToolContext& context, std::span<const input::MouseB
   covered_width_ = 2.0 * static_cast<double>(panels::side_width(layout.picture) + kMargin);
   const bool covered = (open.cover != Cover::none && (open.cover != Cover::warnings || document)) || asking != nullptr ||
                        (open.dialog.owner != nullptr && open.dialog.owner->dialog_covers(open.dialog.kind));
-  if (document && link.connected() && !covered) {
+  if (document && connection.connected() && !covered) {
     left_panel(context, layout);
     right_panel(context, layout);
     for (const auto& tool : context.tools.all()) tool->draw_over_picture(layout);
   }
   const bool box = asking != nullptr || open.dialog.owner != nullptr;
-  if (!link.connected() || ((!document || !link.busy().empty()) && !box))
-    panels::state_panel({link.connected(), link.socket().string(), link.busy(), link.busy_fraction()}, layout.picture);
+  if (!connection.connected() || ((!document || !progress.words().empty()) && !box))
+    panels::state_panel({connection.connected(), connection.socket().string(), progress.words(), progress.fraction()}, layout.picture);
   build_box(context, layout);
   cover(context, mouse, layout);
   if (!guidance.empty() && document) panels::guidance_panel(guidance, layout.picture);
@@ -138,10 +139,10 @@ void PanelArrangement::build(ToolContext& context, std::span<const input::MouseB
 void PanelArrangement::build_box(ToolContext& context, PanelLayout& layout) {
   Tool* asking = context.tools.asking();
   const toolkit::OpenPanels::Dialog dialog =
-      context.link.connected() && asking == nullptr ? context.open.dialog : toolkit::OpenPanels::Dialog{};
+      context.link.connection.connected() && asking == nullptr ? context.open.dialog : toolkit::OpenPanels::Dialog{};
   const bool opened = std::exchange(shown_dialog_, dialog) != dialog;
   if (dialog.owner != nullptr) return dialog.owner->draw_dialog(dialog.kind, opened, layout);
-  if (!context.link.connected() || asking == nullptr) return;
+  if (!context.link.connection.connected() || asking == nullptr) return;
   if (const auto reply = panels::question_box(*asking->question(), layout.picture))
     layout.ask([asking, chosen = *reply] { asking->reply(chosen); });
 }

@@ -46,7 +46,7 @@ Result<void> WindowedKiosk::run() {
     }
     rest_traced_ = rest_traced_ && events->empty();
     if (Result<void> turned = station_.turn(); !turned) return turned;
-    if (const auto& model = station_.link.snapshot()) watch_.draws(model->shell_count());
+    if (const auto& model = station_.link.document.snapshot()) watch_.draws(model->shell_count());
     const Result<bool> drawn = beat();
     if (!drawn) return fail(drawn.error());
     if (*drawn) watch_.shown();
@@ -220,7 +220,7 @@ std::int64_t WindowedKiosk::patience_ns() const {
 
 void WindowedKiosk::wait() {
   std::array<pollfd, 3> watched{
-      {{window_.descriptor(), POLLIN, 0}, {station_.link.descriptor(), POLLIN, 0}, {station_.devices.descriptor(), POLLIN, 0}}};
+      {{window_.descriptor(), POLLIN, 0}, {station_.link.connection.descriptor(), POLLIN, 0}, {station_.devices.descriptor(), POLLIN, 0}}};
   const std::int64_t patience = patience_ns();
   const bool caret = station_.screen.gui().wants_keys();
   const timespec most{patience / 1'000'000'000, patience % 1'000'000'000};

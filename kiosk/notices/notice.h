@@ -10,7 +10,7 @@ struct Notice {
   enum class Kind : std::uint8_t { information, warning, error };
   Kind kind = Kind::information;
   std::string text;
-  std::uint64_t document = 0;   ///< ModelLink::document_number of the document that the text is about; 0: none
+  std::uint64_t document = 0;   ///< FollowedDocument::number of the document that the text is about; 0: none
   bool lists_warnings = false;  ///< the list of the deck's warnings has more of its kind
 };
 

@@ -10,7 +10,7 @@ namespace prismesh::kiosk::toolkit {
 void send(ToolContext& context, mesh::document::Edit edit) {
   if (!context.tools.allow_edit()) return;
   context.tools.edit_begins();
-  context.link.edit(std::move(edit));
+  context.link.edits.send(std::move(edit));
 }
 
 void bring_selection(ToolContext& context) {

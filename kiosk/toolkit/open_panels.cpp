@@ -27,8 +27,8 @@ void set_cover(ToolContext& context, Cover cover) {
   if (std::exchange(context.open.cover, cover) == Cover::warnings) context.trace.line("warnings closed");
   if (cover != Cover::warnings) return;
   context.notices.read_warnings();
-  const std::size_t errors = notices::error_count(context.link.warnings());
-  context.trace.line(fmt::format("warnings shown errors {} warnings {}", errors, context.link.warnings().size() - errors));
+  const std::size_t errors = notices::error_count(context.link.document.warnings());
+  context.trace.line(fmt::format("warnings shown errors {} warnings {}", errors, context.link.document.warnings().size() - errors));
 }
 
 }  // namespace prismesh::kiosk::toolkit

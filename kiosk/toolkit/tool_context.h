@@ -22,7 +22,7 @@ class ToolSet;
 /// The document as it is shown.
 struct ShownModel {
   std::shared_ptr<const ipc::SnapshotView> snapshot;  ///< the newest state; null: no document is open
-  std::uint64_t document_number = 0;                  ///< ModelLink::document_number of it
+  std::uint64_t document_number = 0;                  ///< FollowedDocument::number of it
   bool older = false;                                 ///< the renderer's model is an older state: nothing in it can be picked
 };
 

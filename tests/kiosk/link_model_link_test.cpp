@@ -160,16 +160,16 @@ TEST(ModelLinkTest, a_server_that_lets_a_snapshot_wait_does_not_hold_up_the_pict
   SlowServer server(folder.socket());
   MonotonicClock clock;
   ModelLink link(folder.socket(), std::nullopt, clock, Trace(nullptr));
-  ASSERT_TRUE(turn_until(link, [&] { return !link.up_to_date(); }));
+  ASSERT_TRUE(turn_until(link, [&] { return !link.document.up_to_date(); }));
   ASSERT_TRUE(server.asked());
   for (int turn = 0; turn < 20; ++turn) link.turn();  // would not come back if it waited for the answer
-  EXPECT_EQ(link.snapshot(), nullptr);
-  EXPECT_FALSE(link.up_to_date());
+  EXPECT_EQ(link.document.snapshot(), nullptr);
+  EXPECT_FALSE(link.document.up_to_date());
   EXPECT_EQ(server.times_asked(), 1);
   server.give();
-  ASSERT_TRUE(turn_until(link, [&] { return link.snapshot() != nullptr; }));
-  EXPECT_TRUE(link.up_to_date());
-  EXPECT_EQ(link.snapshot()->shell_count(), 12u);
+  ASSERT_TRUE(turn_until(link, [&] { return link.document.snapshot() != nullptr; }));
+  EXPECT_TRUE(link.document.up_to_date());
+  EXPECT_EQ(link.document.snapshot()->shell_count(), 12u);
 }
 
 TEST(ModelLinkTest, whatever_takes_long_can_be_stopped_and_says_so) {
@@ -177,16 +177,16 @@ TEST(ModelLinkTest, whatever_takes_long_can_be_stopped_and_says_so) {
   SlowServer server(folder.socket());
   MonotonicClock clock;
   ModelLink link(folder.socket(), std::nullopt, clock, Trace(nullptr));
-  ASSERT_TRUE(turn_until(link, [&] { return link.connected(); }));
-  EXPECT_FALSE(link.can_stop());
+  ASSERT_TRUE(turn_until(link, [&] { return link.connection.connected(); }));
+  EXPECT_FALSE(link.connection.progress().can_stop());
   std::string field_answer;
   const std::vector<std::pair<const char*, std::function<void()>>> works = {
-      {"opening", [&] { link.open("other.k"); }},
-      {"saving", [&] { link.save(ipc::Save{}, {}, [](const ipc::Answer&) {}); }},
-      {"an edit", [&] { link.edit(mesh::document::Undo{}); }},
+      {"opening", [&] { link.deck.open("other.k"); }},
+      {"saving", [&] { link.deck.save(ipc::Save{}, {}, [](const ipc::Answer&) {}); }},
+      {"an edit", [&] { link.edits.send(mesh::document::Undo{}); }},
       {"a field",
        [&] {
-         link.question(ipc::GetField{}, [&](const ipc::Answer& answer) {
+         link.connection.question(ipc::GetField{}, [&](const ipc::Answer& answer) {
            if (const auto* failed = std::get_if<ipc::Failed>(&answer)) field_answer = failed->message;
          });
        }},
@@ -194,15 +194,15 @@ TEST(ModelLinkTest, whatever_takes_long_can_be_stopped_and_says_so) {
   for (const auto& [name, begin] : works) {
     SCOPED_TRACE(name);
     begin();
-    ASSERT_TRUE(turn_until(link, [&] { return link.busy_fraction() == 0.5 && link.can_stop(); }));
-    EXPECT_NE(link.busy().find("Esc stops it"), std::string::npos) << link.busy();
-    link.stop();
-    ASSERT_TRUE(turn_until(link, [&] { return link.busy().empty(); })) << link.busy();
-    EXPECT_FALSE(link.can_stop());
+    ASSERT_TRUE(turn_until(link, [&] { return link.connection.progress().fraction() == 0.5 && link.connection.progress().can_stop(); }));
+    EXPECT_NE(link.connection.progress().words().find("Esc stops it"), std::string::npos) << link.connection.progress().words();
+    link.connection.stop();
+    ASSERT_TRUE(turn_until(link, [&] { return link.connection.progress().words().empty(); })) << link.connection.progress().words();
+    EXPECT_FALSE(link.connection.progress().can_stop());
   }
   EXPECT_EQ(field_answer, cancelled().message);
   std::vector<std::string> said;
-  for (const Notice& notice : link.take_notices()) {
+  for (const Notice& notice : link.notices.take()) {
     EXPECT_EQ(notice.kind, Notice::Kind::information) << notice.text;
     said.push_back(notice.text);
   }
@@ -215,15 +215,15 @@ TEST(ModelLinkTest, a_repair_says_how_far_it_is_and_can_be_stopped_and_kept) {
   SlowServer server(folder.socket());
   MonotonicClock clock;
   ModelLink link(folder.socket(), std::nullopt, clock, Trace(nullptr));
-  ASSERT_TRUE(turn_until(link, [&] { return link.connected(); }));
+  ASSERT_TRUE(turn_until(link, [&] { return link.connection.connected(); }));
   for (const bool keep : {false, true}) {
-    link.edit(mesh::document::Repair{});
-    ASSERT_TRUE(turn_until(link, [&] { return link.busy_fraction() == 0.5 && link.can_stop(); }));
-    EXPECT_EQ(link.busy(),
+    link.edits.send(mesh::document::Repair{});
+    ASSERT_TRUE(turn_until(link, [&] { return link.connection.progress().fraction() == 0.5 && link.connection.progress().can_stop(); }));
+    EXPECT_EQ(link.connection.progress().words(),
               "Repairing: round 3, 41 of 1109 bad elements left, 25 s\nEsc stops and discards it, Shift+Esc stops and keeps it");
-    link.stop(keep);
-    ASSERT_TRUE(turn_until(link, [&] { return link.busy().empty(); })) << link.busy();
-    const std::vector<Notice> said = link.take_notices();
+    link.connection.stop(keep);
+    ASSERT_TRUE(turn_until(link, [&] { return link.connection.progress().words().empty(); })) << link.connection.progress().words();
+    const std::vector<Notice> said = link.notices.take();
     ASSERT_EQ(said.size(), 1u);
     EXPECT_EQ(said[0].kind, Notice::Kind::information);
     if (keep)

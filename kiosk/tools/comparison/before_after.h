@@ -34,7 +34,7 @@ class BeforeAfter {
 
  private:
   struct Pair {
-    std::uint64_t document = 0;  ///< ModelLink::document_number
+    std::uint64_t document = 0;  ///< FollowedDocument::number
     std::string edit;
     std::uint64_t before = 0, after = 0;  ///< generations
   };

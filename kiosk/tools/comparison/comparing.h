@@ -41,7 +41,7 @@ class Comparing {
   /// GPU.
   Result<void> follow();
   /// The state for the renderer's model: an older one, or else the current one.
-  std::shared_ptr<const ipc::SnapshotView> model() const { return main_.view ? main_.view : link_.snapshot(); }
+  std::shared_ptr<const ipc::SnapshotView> model() const { return main_.view ? main_.view : link_.document.snapshot(); }
   /// By part, 1: hidden in the current state, and so in all that are shown.
   const std::vector<std::uint8_t>& hidden() const { return hidden_; }
   /// `shift`: as in render::TwoViews.
@@ -87,7 +87,7 @@ class Comparing {
   std::vector<ipc::ListedGeneration> states_;
   std::optional<std::uint64_t> states_of_;  ///< the current generation when they were asked for
   std::uint64_t connection_ = 0;
-  std::uint64_t document_ = 0;   ///< ModelLink::document_number; 0: none
+  std::uint64_t document_ = 0;   ///< FollowedDocument::number; 0: none
   std::optional<Error> failed_;  ///< of the renderer, in an answer
 };
 

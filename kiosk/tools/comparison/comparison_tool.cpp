@@ -37,7 +37,7 @@ constexpr std::array kKeys = {
 
 /// The preview of a pull is in the picture.
 bool shows_pull(const link::ModelLink& link) {
-  const link::RemoteDrag* drag = link.drag();
+  const link::RunningDrag* drag = link.drag.running();
   return drag != nullptr && drag->begun() && drag->frame().sequence > 0;
 }
 
@@ -67,7 +67,7 @@ void ComparisonTool::turn_two_views() {
   CompareWish wish = comparing_.wish();
   wish.two_views = !wish.two_views;
   // Before and after: the deck as opened stands beside the current state.
-  if (const auto& state = context_.link.state(); wish.two_views && !wish.beside && state && !state->generations.empty())
+  if (const auto& state = context_.link.document.state(); wish.two_views && !wish.beside && state && !state->generations.empty())
     wish.beside = state->generations.front().number;
   set(wish);
 }
@@ -133,7 +133,7 @@ Result<void> ComparisonTool::set_model() {
   drawn_ = wanted;
   drawn_hidden_ = comparing_.hidden();
   const auto& shown = context_.shown.snapshot;
-  if (shown && context_.link.snapshot() == shown) toolkit::take_model(context_);
+  if (shown && context_.link.document.snapshot() == shown) toolkit::take_model(context_);
   return {};
 }
 

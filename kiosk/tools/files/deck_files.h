@@ -19,7 +19,7 @@ class DeckFiles {
   /// How a deck is saved elsewhere: the document goes on as that deck, or that is a copy and the document stays as it is.
   enum class Elsewhere : std::uint8_t { becomes, copy };
 
-  void open(const std::filesystem::path& deck) { link_.open(deck); }
+  void open(const std::filesystem::path& deck) { link_.deck.open(deck); }
   /// `remark`: added to the notice about the saving.
   void save(const std::string& remark);
   void save_elsewhere(const std::filesystem::path& path, Elsewhere how, const std::string& remark);

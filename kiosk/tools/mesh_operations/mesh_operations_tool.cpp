@@ -121,7 +121,7 @@ void MeshOperationsTool::forget() {
 
 void MeshOperationsTool::end_kept_preview() {
   const auto& shown = context_.shown.snapshot;
-  const bool in_doubt = context_.link.editing() || !context_.link.up_to_date();
+  const bool in_doubt = context_.link.edits.under_way() || !context_.link.document.up_to_date();
   if (!kept_ || (shown && shown->info().generation == *kept_ && in_doubt)) return;
   kept_.reset();
   context_.renderer.end_preview();

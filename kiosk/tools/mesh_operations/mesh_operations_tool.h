@@ -17,7 +17,7 @@ std::span<const input::KeyBinding> keys();
 
 class MeshOperationsTool final : public toolkit::Tool {
  public:
-  explicit MeshOperationsTool(toolkit::ToolContext& context) : context_(context), preview_(context.link) {}
+  explicit MeshOperationsTool(toolkit::ToolContext& context) : context_(context), preview_(context.link.connection) {}
 
   std::string_view name() const override;
   void command(std::uint8_t number, const toolkit::Pointer& pointer) override;

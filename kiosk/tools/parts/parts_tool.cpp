@@ -74,9 +74,9 @@ void PartsTool::set_part(VisibilityAction action, const Pointer& pointer) {
 /// The file of the part under the pointer; of several files that hold the part the first. Locking unlocks what is locked.
 void PartsTool::set_file(VisibilityAction action, const Pointer& pointer) {
   const auto index = part_at(pointer);
-  if (!index || !context_.link.state()) return;
+  if (!index || !context_.link.document.state()) return;
   const ipc::SnapshotPart& part = context_.shown.snapshot->info().parts[index->value];
-  for (const ipc::DeckFile& file : context_.link.state()->files) {
+  for (const ipc::DeckFile& file : context_.link.document.state()->files) {
     if (!std::binary_search(file.parts.begin(), file.parts.end(), part.id)) continue;
     const bool unlocks = action == VisibilityAction::lock && part.locked;
     return set(file_expression(file.name), unlocks ? VisibilityAction::unlock : action);
@@ -105,16 +105,16 @@ PartFacts PartsTool::facts() const {
     if (part.hidden) hidden.push_back(part.id);
     if (part.locked) locked.push_back(part.id);
   }
-  if (!context_.link.state() || list_rows() == facts.parts.size()) return facts;  // one file is the deck itself
+  if (!context_.link.document.state() || list_rows() == facts.parts.size()) return facts;  // one file is the deck itself
   std::sort(hidden.begin(), hidden.end());
   std::sort(locked.begin(), locked.end());
-  for (const ipc::DeckFile& file : context_.link.state()->files)
+  for (const ipc::DeckFile& file : context_.link.document.state()->files)
     facts.files.push_back({file.name, file.shells, file.parts.size(), all_in(file.parts, hidden), all_in(file.parts, locked)});
   return facts;
 }
 
 std::size_t PartsTool::list_rows() const {
-  const std::size_t files = context_.link.state() ? context_.link.state()->files.size() : 0;
+  const std::size_t files = context_.link.document.state() ? context_.link.document.state()->files.size() : 0;
   return context_.shown.snapshot->info().parts.size() + (files > 1 ? files : 0);
 }
 

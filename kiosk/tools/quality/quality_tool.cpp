@@ -270,7 +270,7 @@ void QualityTool::draw_status(PanelLayout&) {
   CountsFacts facts;
   facts.counts = context_.shown.snapshot->info().counts;
   facts.clusters = context_.shown.snapshot->size(ipc::SnapshotArray::clusters);
-  const link::RemoteDrag* drag = context_.tools.pulling() ? context_.link.drag() : nullptr;
+  const link::RunningDrag* drag = context_.tools.pulling() ? context_.link.drag.running() : nullptr;
   if (drag != nullptr && drag->begun() && drag->frame().sequence > 0) facts.pulled = drag->frame().counts;
   facts.hidden_glyphs = context_.tools.glyphs_hidden();
   facts.glyphs_left_out = context_.glyphs_left_out;

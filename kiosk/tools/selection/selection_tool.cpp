@@ -101,7 +101,8 @@ void SelectionTool::click(const NodeClicked& click) {
 void SelectionTool::step_back() {
   context_.selection.last_region.reset();
   const auto& shown = context_.shown.snapshot;
-  if (shown && shown->info().can_undo && link::is_selecting(context_.link.made_by())) toolkit::send(context_, mesh::document::Undo{});
+  if (shown && shown->info().can_undo && link::is_selecting(context_.link.document.made_by()))
+    toolkit::send(context_, mesh::document::Undo{});
 }
 
 void SelectionTool::draw(const OutlineDrawn& outline) {
@@ -225,7 +226,7 @@ void SelectionTool::draw_document_section(PanelLayout& layout) {
 void SelectionTool::draw_dialog(int, bool opened, PanelLayout& layout) {
   ExpressionFacts facts;
   facts.earlier = &expressions_.entries();
-  if (const auto& counted = context_.link.counted()) {
+  if (const auto& counted = context_.link.count.answer()) {
     facts.counted_for = counted->expr;
     if (counted->counted) facts.count = ExpressionFacts::Count{counted->counted->nodes, counted->counted->shells, counted->counted->parts};
     if (counted->failed) facts.problem = Error{counted->failed->file, counted->failed->line, counted->failed->message}.text();
@@ -234,7 +235,7 @@ void SelectionTool::draw_dialog(int, bool opened, PanelLayout& layout) {
   const ExpressionAsked asked = expression_box(facts, layout.picture, opened, entry_);
   if (asked.typed)
     layout.ask([this, typed = *asked.typed] {
-      if (!typed.text.empty()) context_.link.count(typed.text, typed.kind);
+      if (!typed.text.empty()) context_.link.count.ask(typed.text, typed.kind);
     });
   if (!asked.entered) return;
   layout.ask([this, entered = *asked.entered] { enter(entered); });

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "kiosk/link/model_link.h"
+#include "kiosk/link/remote_drag.h"
 #include "kiosk/notices/trace.h"
 #include "kiosk/render/renderer.h"
 
@@ -11,13 +11,14 @@ namespace prismesh::kiosk::tools::shaping {
 
 class PullPreview {
  public:
-  PullPreview(link::ModelLink& link, render::Renderer& renderer, notices::Trace trace) : link_(link), renderer_(renderer), trace_(trace) {}
+  PullPreview(const link::RemoteDrag& drag, render::Renderer& renderer, notices::Trace trace)
+      : drag_(drag), renderer_(renderer), trace_(trace) {}
 
   /// Gives the renderer the newest frame of the drag, or ends the preview where there is no drag. Errors: no graphics memory.
   Result<void> follow();
 
  private:
-  link::ModelLink& link_;
+  const link::RemoteDrag& drag_;
   render::Renderer& renderer_;
   notices::Trace trace_;
   bool shown_ = false;

@@ -13,11 +13,11 @@ namespace prismesh::kiosk::tools::shaping {
 
 using input::Pixel;
 using input::Under;
-using link::RemoteDrag;
+using link::RunningDrag;
 using toolkit::Pointer;
 
 void ShapingTool::begin_pull(Under handle, const Pixel& at) {
-  if (!anchor_ || context_.link.drag() != nullptr || !context_.tools.allow_edit()) return;
+  if (!anchor_ || context_.link.drag.running() != nullptr || !context_.tools.allow_edit()) return;
   context_.tools.leave_previews();
   context_.tools.edit_begins();
   const stereo::Aim now = toolkit::aim(context_.view);
@@ -33,14 +33,14 @@ void ShapingTool::begin_pull(Under handle, const Pixel& at) {
   handle_ = handle;
   pulled_ = {};
   const ShapedHandle shaped{handle, anchor_->id, context_.selection.centre.value_or(anchor_->at), axis_};
-  context_.link.begin_drag(edit_of(shaped, options_, {}));
-  if (context_.link.drag() == nullptr) pull_.reset();
+  context_.link.drag.begin(edit_of(shaped, options_, {}));
+  if (context_.link.drag.running() == nullptr) pull_.reset();
 }
 
 void ShapingTool::pull_to(const Pixel& pixel) {
   pull_->pointer = pixel;
   pulled_ = pull_->pull.at(toolkit::aim(context_.view), pixel, pulled_);
-  if (pull_->axis_known) context_.link.pull(pulled_);
+  if (pull_->axis_known) context_.link.drag.pull(pulled_);
 }
 
 /// The edit gets exactly the numbers that were typed.
@@ -48,15 +48,15 @@ void ShapingTool::send_typed() {
   if (!pull_ || !pull_->typed || !pull_->axis_known) return;
   pulled_ = *pull_->typed;
   if (pull_->pull.handle() == Under::lift_handle) pulled_.distance = pull_->pull.lift_of(pull_->typed->distance);
-  context_.link.pull(pulled_);
-  context_.link.commit_drag();
+  context_.link.drag.pull(pulled_);
+  context_.link.drag.commit();
 }
 
 void ShapingTool::cancel_gesture() {
   if (!pull_) return;
   pull_.reset();
   if (is_typing() && typing_.what == Typing::For::pull) toolkit::close_dialog(context_);
-  context_.link.cancel_drag();
+  context_.link.drag.cancel();
   ++context_.changes;
 }
 
@@ -68,7 +68,7 @@ void ShapingTool::view_moved(const Pointer& pointer) {
 }
 
 Result<void> ShapingTool::follow() {
-  const RemoteDrag* drag = context_.link.drag();
+  const RunningDrag* drag = context_.link.drag.running();
   if (drag == nullptr)
     pull_.reset();
   else if (drag->begun() && pull_ && !pull_->axis_known)
@@ -80,7 +80,8 @@ Result<void> ShapingTool::follow() {
 /// During a pull the last answer stays: it was of the same edit.
 void ShapingTool::ask_followed_edges() {
   const link::ModelLink& link = context_.link;
-  if (pull_ || link.drag() != nullptr || !link.connected() || !link.up_to_date() || context_.shown.older || !context_.shown.snapshot)
+  if (pull_ || link.drag.running() != nullptr || !link.connection.connected() || !link.document.up_to_date() || context_.shown.older ||
+      !context_.shown.snapshot)
     return;
   const ipc::SnapshotInfo& info = context_.shown.snapshot->info();
   std::optional<mesh::document::Edit> edit;
@@ -90,7 +91,7 @@ void ShapingTool::ask_followed_edges() {
 }
 
 /// The server has told the grab and the normal: what was pulled or typed meanwhile goes to it.
-void ShapingTool::take_axis(const RemoteDrag& drag) {
+void ShapingTool::take_axis(const RunningDrag& drag) {
   const ipc::DragBegun& facts = drag.facts();
   pull_->pull.set_axis(toolkit::aim(context_.view), mesh::Vec3(facts.grab_position[0], facts.grab_position[1], facts.grab_position[2]),
                        mesh::Vec3(facts.normal[0], facts.normal[1], facts.normal[2]));
@@ -99,7 +100,7 @@ void ShapingTool::take_axis(const RemoteDrag& drag) {
     send_typed();
   else
     pull_to(pull_->pointer);
-  if (pull_->released_early) context_.link.commit_drag();
+  if (pull_->released_early) context_.link.drag.commit();
 }
 
 // --- numbers ---

@@ -79,7 +79,7 @@ bool ShapingTool::take_handle_gesture(const Gesture& gesture) {
   pull_to(moved != nullptr ? moved->at : released->at);
   if (released == nullptr) return true;
   if (pull_->axis_known)
-    context_.link.commit_drag();
+    context_.link.drag.commit();
   else
     pull_->released_early = true;
   return true;
@@ -103,7 +103,8 @@ std::optional<render::Handle> ShapingTool::shown_handle() const {
     return handle;
   }
   const link::ModelLink& link = context_.link;
-  if (!anchor_ || context_.shown.older || !link.connected() || link.drag() != nullptr || context_.tools.in_mode(this)) return std::nullopt;
+  if (!anchor_ || context_.shown.older || !link.connection.connected() || link.drag.running() != nullptr || context_.tools.in_mode(this))
+    return std::nullopt;
   const stereo::Aim now = toolkit::aim(context_.view);
   handle.at = anchor_->at;
   handle.direction = arrow_direction(now, *anchor_);
@@ -138,7 +139,7 @@ void ShapingTool::add_to_picture(render::Picture& picture) const {
   picture.handle = shown_handle();
   const auto& shown = context_.shown.snapshot;
   if (const ipc::FollowedEdges* edges = picture.handle && shown ? followed_.known(shown->info().generation) : nullptr)
-    picture.followed_edges = lines_of(*edges, *shown, context_.link.drag());
+    picture.followed_edges = lines_of(*edges, *shown, context_.link.drag.running());
 }
 
 std::string ShapingTool::guidance() const {
@@ -180,7 +181,7 @@ void ShapingTool::draw_document_section(PanelLayout&) {
     case Under::turn_handle: facts.degrees = pulled_.degrees; break;
     default: facts.length = pulled_.by.norm(); break;
   }
-  if (const link::RemoteDrag* drag = context_.link.drag(); drag != nullptr && drag->begun()) facts.nodes = drag->facts().nodes;
+  if (const link::RunningDrag* drag = context_.link.drag.running(); drag != nullptr && drag->begun()) facts.nodes = drag->facts().nodes;
   pull_section(facts);
 }
 

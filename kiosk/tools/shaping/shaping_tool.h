@@ -23,7 +23,7 @@ std::span<const input::KeyBinding> keys();
 class ShapingTool final : public toolkit::Tool {
  public:
   explicit ShapingTool(toolkit::ToolContext& context)
-      : context_(context), preview_(context.link, context.renderer, context.trace), followed_(context.link) {}
+      : context_(context), preview_(context.link.drag, context.renderer, context.trace), followed_(context.link.connection) {}
 
   std::string_view name() const override;
   void command(std::uint8_t number, const toolkit::Pointer& pointer) override;
@@ -74,7 +74,7 @@ class ShapingTool final : public toolkit::Tool {
   void begin_pull(input::Under handle, const input::Pixel& at);
   void pull_to(const input::Pixel& pixel);
   void send_typed();
-  void take_axis(const link::RemoteDrag& drag);
+  void take_axis(const link::RunningDrag& drag);
   void ask_followed_edges();
   bool take_handle_gesture(const input::Gesture& gesture);
 
