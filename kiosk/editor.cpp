@@ -16,8 +16,10 @@ namespace prismesh::kiosk {
 
 using input::Pixel;
 using notices::Notice;
+using toolkit::AsksQuestions;
 using toolkit::Cover;
 using toolkit::Pointer;
+using toolkit::TakesNumbers;
 using toolkit::Tool;
 
 Editor::Editor(const stereo::Profile& profile, const toolkit::ToolOptions& options, const EditorServices& services)
@@ -36,7 +38,7 @@ void Editor::set_picture_size(display::PixelSize size) {
 void Editor::look_from(const stereo::SeenFrom& seen) {
   context_.view.seen = seen;
   const std::int64_t now = context_.clock.now_ns();
-  for (const auto& tool : tools_.all()) tool->look(now);
+  for (toolkit::MovesView* tool : tools_.with<toolkit::MovesView>()) tool->look(now);
 }
 
 void Editor::set_eyes_facts(std::optional<toolkit::EyesFacts> facts) {
@@ -130,7 +132,7 @@ void Editor::toggle_cover(Cover cover) { toolkit::set_cover(context_, context_.o
 void Editor::cancel(bool keep) {
   if (context_.link.connection.progress().can_stop()) return context_.link.connection.stop(keep);
   if (tools_.dragging()) return cancel_gesture();
-  if (Tool* asking = tools_.asking(); asking != nullptr)
+  if (AsksQuestions* asking = tools_.asking(); asking != nullptr)
     asking->reply(panels::Reply::cancel);
   else if (context_.open.dialog.owner != nullptr)
     toolkit::close_dialog(context_);
@@ -155,7 +157,7 @@ void Editor::panel_command(const input::Command& command) {
 }
 
 bool Editor::reply_by_key(display::Key key) {
-  Tool* asking = tools_.asking();
+  AsksQuestions* asking = tools_.asking();
   if (asking == nullptr) return false;
   const auto& choices = asking->question()->choices;
   const auto chosen = std::find_if(choices.begin(), choices.end(), [&](const panels::Question::Choice& each) { return each.key == key; });
@@ -167,11 +169,11 @@ bool Editor::reply_by_key(display::Key key) {
 
 bool Editor::takes_numbers(const Pointer& pointer) const {
   if (dialog_open()) return false;
-  return std::any_of(tools_.all().begin(), tools_.all().end(), [&](const auto& tool) { return tool->takes_numbers(pointer); });
+  return std::ranges::any_of(tools_.with<TakesNumbers>(), [&](const TakesNumbers* tool) { return tool->takes_numbers(pointer); });
 }
 
 void Editor::begin_number(const std::string& text, const Pointer& pointer) {
-  for (const auto& tool : tools_.all())
+  for (TakesNumbers* tool : tools_.with<TakesNumbers>())
     if (tool->begin_number(text, pointer)) return;
 }
 
@@ -190,7 +192,7 @@ void Editor::trace_picture() {
   std::string text = fmt::format("aim {} {}", now.width, now.height);
   for (int i = 0; i < 16; ++i) text += fmt::format(" {}", clip.data()[i]);
   if (text != traced_aim_) context_.trace.line(traced_aim_ = text);
-  for (const auto& tool : tools_.all()) tool->trace_picture();
+  for (toolkit::TracesPicture* tool : tools_.with<toolkit::TracesPicture>()) tool->trace_picture();
   text = notices_.empty() ? "notice none" : notices::trace_of(notices_.front());
   text.replace(0, std::string_view("notice").size(), "reads");
   if (text != traced_notice_) context_.trace.line(traced_notice_ = text);

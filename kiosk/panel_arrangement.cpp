@@ -21,8 +21,10 @@ namespace {
 using panels::kGrid;
 using panels::kMargin;
 using panels::PanelLayout;
+using toolkit::AsksQuestions;
 using toolkit::Cover;
-using toolkit::Tool;
+using toolkit::HasList;
+using toolkit::HasStatus;
 using toolkit::ToolContext;
 
 panels::DocumentFacts document_facts(const ToolContext& context) {
@@ -66,16 +68,15 @@ void right_panel(ToolContext& context, PanelLayout& layout) {
   ImGui::SetNextWindowPos(ImVec2(static_cast<float>(layout.picture.width) - kMargin - width, kMargin));
   std::size_t row_count = 0;
   float status = 0;
-  for (const auto& tool : context.tools.all()) {
-    row_count += tool->list_rows();
+  for (const HasList* tool : context.tools.with<HasList>()) row_count += tool->list_rows();
+  for (const HasStatus* tool : context.tools.with<HasStatus>())
     status += static_cast<float>(tool->status_height(static_cast<double>(width - 4 * kGrid)));
-  }
   const float line = ImGui::GetTextLineHeightWithSpacing();
   ImGui::SetNextWindowSize(
       ImVec2(width, std::min(max_height, panels::on_grid(line * (static_cast<float>(row_count) + 7.0f) + 4 * kGrid + status))));
   ImGui::Begin("Quality and parts", nullptr, panels::kPanelFlags);
-  for (const auto& tool : context.tools.all()) tool->draw_status(layout);
-  for (const auto& tool : context.tools.all()) tool->draw_list(layout);
+  for (HasStatus* tool : context.tools.with<HasStatus>()) tool->draw_status(layout);
+  for (HasList* tool : context.tools.with<HasList>()) tool->draw_list(layout);
   ImGui::End();
 }
 
@@ -114,7 +115,7 @@ void PanelArrangement::build(ToolContext& context, std::span<const input::MouseB
   const link::ServerProgress& progress = connection.progress();
   const toolkit::OpenPanels& open = context.open;
   const bool document = context.shown.snapshot != nullptr;
-  const Tool* asking = context.tools.asking();
+  const AsksQuestions* asking = context.tools.asking();
   const std::string guidance = context.tools.guidance();
   layout.bottom = static_cast<double>(static_cast<float>(layout.picture.height) - kMargin);
   layout.top = static_cast<double>(guidance.empty() ? kMargin : kMargin + 3 * ImGui::GetFontSize());
@@ -124,7 +125,7 @@ void PanelArrangement::build(ToolContext& context, std::span<const input::MouseB
   if (document && connection.connected() && !covered) {
     left_panel(context, layout);
     right_panel(context, layout);
-    for (const auto& tool : context.tools.all()) tool->draw_over_picture(layout);
+    for (auto* tool : context.tools.with<toolkit::DrawsOverPicture>()) tool->draw_over_picture(layout);
   }
   const bool box = asking != nullptr || open.dialog.owner != nullptr;
   if (!connection.connected() || ((!document || !progress.words().empty()) && !box))
@@ -137,7 +138,7 @@ void PanelArrangement::build(ToolContext& context, std::span<const input::MouseB
 
 /// The question, or else the dialog that is open.
 void PanelArrangement::build_box(ToolContext& context, PanelLayout& layout) {
-  Tool* asking = context.tools.asking();
+  AsksQuestions* asking = context.tools.asking();
   const toolkit::OpenPanels::Dialog dialog =
       context.link.connection.connected() && asking == nullptr ? context.open.dialog : toolkit::OpenPanels::Dialog{};
   const bool opened = std::exchange(shown_dialog_, dialog) != dialog;

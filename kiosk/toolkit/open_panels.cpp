@@ -17,7 +17,7 @@ void show_left(ToolContext& context, Tool* tool) {
 
 void toggle_left(ToolContext& context, Tool* tool) { show_left(context, context.open.left == tool ? nullptr : tool); }
 
-void open_dialog(ToolContext& context, Tool* owner, int kind) {
+void open_dialog(ToolContext& context, HasDialogs* owner, int kind) {
   context.open.dialog = {owner, kind};
   set_cover(context, Cover::none);
 }

@@ -11,7 +11,7 @@ void show_left(ToolContext& context, Tool* tool);
 void toggle_left(ToolContext& context, Tool* tool);
 
 /// Opens a dialog of the tool in the place of the one that is open, and closes what covers the panels.
-void open_dialog(ToolContext& context, Tool* owner, int kind = 0);
+void open_dialog(ToolContext& context, HasDialogs* owner, int kind = 0);
 inline void close_dialog(ToolContext& context) { context.open.dialog = {}; }
 
 /// Shows that in the place of the panels at the sides. The deck's warnings count as read when they are shown.

@@ -16,6 +16,7 @@
 
 namespace prismesh::kiosk::toolkit {
 
+class HasDialogs;
 class Tool;
 class ToolSet;
 
@@ -40,7 +41,7 @@ enum class Cover : std::uint8_t { none, menu, help, warnings };
 struct OpenPanels {
   /// A box that is typed into. Its owner may have several kinds.
   struct Dialog {
-    Tool* owner = nullptr;  ///< null: no dialog is open
+    HasDialogs* owner = nullptr;  ///< null: no dialog is open
     int kind = 0;
     bool operator==(const Dialog&) const = default;
   };

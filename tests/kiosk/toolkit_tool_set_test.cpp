@@ -12,7 +12,7 @@ using input::TakeBackClicked;
 using testing::ElementsAre;
 
 /// Writes down what it is asked for.
-class NotedTool final : public Tool {
+class NotedTool final : public Tool, public TakesGestures, public HasMode, public TakesBack, public GuardsEdits {
  public:
   NotedTool(std::string name, std::vector<std::string>& noted) : name_(std::move(name)), noted_(noted) {}
 
@@ -23,6 +23,7 @@ class NotedTool final : public Tool {
   bool leave_mode() override { return note("leave mode"), mode; }
   bool take_back() override { return note("take back"), on; }
   bool allow_edit() override { return note("allow edit"), !refuses; }
+  void edit_begins() override { note("edit begins"); }
   std::string guidance() const override { return words; }
 
   bool takes = false, mode = false, on = false, refuses = false;
@@ -33,6 +34,13 @@ class NotedTool final : public Tool {
 
   std::string name_;
   std::vector<std::string>& noted_;
+};
+
+/// Has no ability beside those of every tool.
+class PlainTool final : public Tool {
+ public:
+  std::string_view name() const override { return "plain"; }
+  std::string guidance() const override { return "plain words"; }
 };
 
 class ToolSetTest : public testing::Test {
@@ -70,6 +78,19 @@ TEST_F(ToolSetTest, a_gesture_goes_to_tools_in_a_mode_first_and_ends_with_the_on
   second_.takes = true;
   tools_.gesture(TakeBackClicked{});
   EXPECT_THAT(noted_, ElementsAre("second: gesture"));
+}
+
+TEST_F(ToolSetTest, only_tools_with_an_ability_are_asked_in_the_order_of_all) {
+  tools_.add(std::make_unique<PlainTool>());
+  EXPECT_EQ(tools_.all().size(), 3u);
+  EXPECT_THAT(tools_.with<GuardsEdits>(), ElementsAre(&first_, &second_));
+  EXPECT_TRUE(tools_.with<HasList>().empty());
+  tools_.edit_begins();
+  EXPECT_THAT(noted_, ElementsAre("first: edit begins", "second: edit begins"));
+  EXPECT_EQ(tools_.guidance(), "plain words") << "every tool may have some";
+  first_.mode = true;
+  first_.words = "what to click";
+  EXPECT_EQ(tools_.guidance(), "what to click");
 }
 
 TEST_F(ToolSetTest, a_tool_sees_the_modes_of_the_others) {

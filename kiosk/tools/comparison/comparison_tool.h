@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "kiosk/toolkit/abilities.h"
 #include "kiosk/toolkit/tool.h"
 #include "kiosk/toolkit/tool_context.h"
 #include "kiosk/tools/comparison/before_after.h"
@@ -17,7 +18,12 @@ namespace prismesh::kiosk::tools::comparison {
 
 std::span<const input::KeyBinding> keys();
 
-class ComparisonTool final : public toolkit::Tool {
+class ComparisonTool final : public toolkit::Tool,
+                             public toolkit::TakesBack,
+                             public toolkit::GuardsEdits,
+                             public toolkit::ColoursModel,
+                             public toolkit::HidesGlyphs,
+                             public toolkit::DrawsOverPicture {
  public:
   explicit ComparisonTool(toolkit::ToolContext& context)
       : context_(context),

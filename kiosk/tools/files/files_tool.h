@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "kiosk/toolkit/abilities.h"
 #include "kiosk/toolkit/tool.h"
 #include "kiosk/toolkit/tool_context.h"
 #include "kiosk/tools/files/deck_files.h"
@@ -16,7 +17,7 @@ std::span<const input::KeyBinding> keys();
 /// Ends the kiosk; asks first, if there are unsaved edits.
 input::Command quit_command();
 
-class FilesTool final : public toolkit::Tool {
+class FilesTool final : public toolkit::Tool, public toolkit::HasDialogs, public toolkit::AsksQuestions {
  public:
   explicit FilesTool(toolkit::ToolContext& context) : context_(context), deck_files_(context.link, context.trace) {}
 

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 
+#include "kiosk/toolkit/abilities.h"
 #include "kiosk/toolkit/tool.h"
 #include "kiosk/toolkit/tool_context.h"
 #include "kiosk/tools/mesh_operations/by_hand.h"
@@ -15,7 +16,7 @@ namespace prismesh::kiosk::tools::mesh_operations {
 
 std::span<const input::KeyBinding> keys();
 
-class MeshOperationsTool final : public toolkit::Tool {
+class MeshOperationsTool final : public toolkit::Tool, public toolkit::TakesGestures, public toolkit::HasMode, public toolkit::Previews {
  public:
   explicit MeshOperationsTool(toolkit::ToolContext& context) : context_(context), preview_(context.link.connection) {}
 

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 
+#include "kiosk/toolkit/abilities.h"
 #include "kiosk/toolkit/tool.h"
 #include "kiosk/toolkit/tool_context.h"
 #include "kiosk/tools/parts/part_list.h"
@@ -14,7 +15,7 @@ namespace prismesh::kiosk::tools::parts {
 
 std::span<const input::KeyBinding> keys();
 
-class PartsTool final : public toolkit::Tool {
+class PartsTool final : public toolkit::Tool, public toolkit::HasList {
  public:
   explicit PartsTool(toolkit::ToolContext& context) : context_(context) {}
 

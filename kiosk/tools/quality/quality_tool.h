@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "kiosk/panels/entry_box.h"
+#include "kiosk/toolkit/abilities.h"
 #include "kiosk/toolkit/tool.h"
 #include "kiosk/toolkit/tool_context.h"
 #include "kiosk/tools/quality/mend_limits.h"
@@ -20,7 +21,7 @@ namespace prismesh::kiosk::tools::quality {
 
 std::span<const input::KeyBinding> keys();
 
-class QualityTool final : public toolkit::Tool {
+class QualityTool final : public toolkit::Tool, public toolkit::HidesGlyphs, public toolkit::HasStatus, public toolkit::HasDialogs {
  public:
   explicit QualityTool(toolkit::ToolContext& context) : context_(context), link_(context.link) {}
 

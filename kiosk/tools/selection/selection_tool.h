@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "kiosk/toolkit/abilities.h"
 #include "kiosk/toolkit/history_file.h"
 #include "kiosk/toolkit/tool.h"
 #include "kiosk/toolkit/tool_context.h"
@@ -16,7 +17,11 @@ namespace prismesh::kiosk::tools::selection {
 
 std::span<const input::KeyBinding> keys();
 
-class SelectionTool final : public toolkit::Tool {
+class SelectionTool final : public toolkit::Tool,
+                            public toolkit::TakesGestures,
+                            public toolkit::Drags,
+                            public toolkit::Clears,
+                            public toolkit::HasDialogs {
  public:
   explicit SelectionTool(toolkit::ToolContext& context) : context_(context), expressions_(context.options.expressions) {}
 

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "kiosk/panels/number_box.h"
+#include "kiosk/toolkit/abilities.h"
 #include "kiosk/toolkit/tool.h"
 #include "kiosk/toolkit/tool_context.h"
 #include "kiosk/tools/shaping/axis_pick.h"
@@ -20,7 +21,16 @@ namespace prismesh::kiosk::tools::shaping {
 
 std::span<const input::KeyBinding> keys();
 
-class ShapingTool final : public toolkit::Tool {
+class ShapingTool final : public toolkit::Tool,
+                          public toolkit::TakesGestures,
+                          public toolkit::TakesNumbers,
+                          public toolkit::HasHandle,
+                          public toolkit::Drags,
+                          public toolkit::HasMode,
+                          public toolkit::TakesBack,
+                          public toolkit::FollowsView,
+                          public toolkit::TracesPicture,
+                          public toolkit::HasDialogs {
  public:
   explicit ShapingTool(toolkit::ToolContext& context)
       : context_(context), preview_(context.link.drag, context.renderer, context.trace), followed_(context.link.connection) {}

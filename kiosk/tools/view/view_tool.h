@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "kiosk/toolkit/abilities.h"
 #include "kiosk/toolkit/tool.h"
 #include "kiosk/toolkit/tool_context.h"
 #include "kiosk/tools/view/shared_view.h"
@@ -16,7 +17,7 @@ namespace prismesh::kiosk::tools::view {
 
 std::span<const input::KeyBinding> keys();
 
-class ViewTool final : public toolkit::Tool {
+class ViewTool final : public toolkit::Tool, public toolkit::TakesGestures, public toolkit::MovesView, public toolkit::HasStatus {
  public:
   explicit ViewTool(toolkit::ToolContext& context) : context_(context), shared_(context) {}
 
