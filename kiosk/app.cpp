@@ -81,7 +81,7 @@ Result<void> run(const AppOptions& options) {
   const std::string profile_name = options.profile.value_or(settings->files.empty() ? "mono" : settings->display.profile);
   const Result<stereo::Profile> profile = stereo::find_profile(profile_name);
   if (!profile) return fail(profile.error());
-  Result<tools::MouseLayout> mouse = tools::find_mouse_layout(settings->hand.mouse);
+  Result<input::MouseLayout> mouse = input::find_mouse_layout(settings->hand.mouse);
   if (!mouse) return fail(mouse.error());
   StationOptions what;
   what.mouse = std::move(*mouse);

@@ -104,7 +104,7 @@ Result<void> Calibrator::take_events() {
   if (!events) return fail(events.error());
   for (const display::WindowEvent& event : *events) {
     gui_->feed(event);
-    if (const auto* moved = std::get_if<display::PointerMoved>(&event)) pointer_ = tools::Pixel(moved->x, moved->y);
+    if (const auto* moved = std::get_if<display::PointerMoved>(&event)) pointer_ = input::Pixel(moved->x, moved->y);
     if (std::holds_alternative<display::PointerLeft>(event)) pointer_.reset();
     if (std::holds_alternative<display::CloseRequested>(event)) left_ = true;
     if (const auto* key = std::get_if<display::KeyChanged>(&event)) take_key(*key);

@@ -61,7 +61,7 @@ class Calibrator {
   std::int64_t laid_out_ns_ = 0;
   std::string trouble_;
   std::string traced_;
-  std::optional<tools::Pixel> pointer_;
+  std::optional<input::Pixel> pointer_;
   std::optional<std::filesystem::path> saved_;
   bool left_ = false;
 };

@@ -5,7 +5,7 @@
 
 namespace prismesh::kiosk {
 
-DeviceLink::DeviceLink(const std::filesystem::path& socket, tools::Trace trace) : connection_(socket, "prismesh-kiosk"), trace_(trace) {}
+DeviceLink::DeviceLink(const std::filesystem::path& socket, notices::Trace trace) : connection_(socket, "prismesh-kiosk"), trace_(trace) {}
 
 void DeviceLink::turn() {
   client_ = connection_.client();

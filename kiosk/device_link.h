@@ -10,14 +10,14 @@
 #include <vector>
 
 #include "ipc/device/client.h"
+#include "kiosk/notices/trace.h"
 #include "kiosk/stereo/tracked_eyes.h"
-#include "kiosk/tools/trace.h"
 
 namespace prismesh::kiosk {
 
 class DeviceLink {
  public:
-  DeviceLink(const std::filesystem::path& socket, tools::Trace trace);
+  DeviceLink(const std::filesystem::path& socket, notices::Trace trace);
 
   /// Connects when it is time to, and reads what has arrived.
   void turn();
@@ -54,7 +54,7 @@ class DeviceLink {
   void send(const Request& request);
 
   ipc::ReconnectingDeviceClient connection_;
-  tools::Trace trace_;
+  notices::Trace trace_;
   ipc::DeviceClient* client_ = nullptr;  ///< good until the next turn
   std::size_t greeted_ = 0;              ///< connections that were told what is shown
   std::optional<bool> shown_mono_;

@@ -6,21 +6,23 @@
 #include <fmt/format.h>
 
 #include "kiosk/editor_keys.h"
+#include "kiosk/input/key_table.h"
 #include "kiosk/tool_list.h"
-#include "kiosk/tools/edits.h"
-#include "kiosk/tools/key_table.h"
-#include "kiosk/tools/open_panels.h"
-#include "kiosk/tools/picking.h"
+#include "kiosk/toolkit/edits.h"
+#include "kiosk/toolkit/open_panels.h"
+#include "kiosk/toolkit/picking.h"
 
 namespace prismesh::kiosk {
 
-using tools::Cover;
-using tools::Notice;
-using tools::Pixel;
-using tools::Pointer;
-using tools::Tool;
+using input::Pixel;
+using notices::Notice;
+using toolkit::AsksQuestions;
+using toolkit::Cover;
+using toolkit::Pointer;
+using toolkit::TakesNumbers;
+using toolkit::Tool;
 
-Editor::Editor(const stereo::Profile& profile, const tools::ToolOptions& options, const EditorServices& services)
+Editor::Editor(const stereo::Profile& profile, const toolkit::ToolOptions& options, const EditorServices& services)
     : notices_(services.trace), context_{services.link, services.renderer, services.clock, services.trace, notices_, tools_, options} {
   context_.view.profile = profile;
   context_.view.view.rotation = *stereo::named_rotation("iso");
@@ -36,10 +38,10 @@ void Editor::set_picture_size(display::PixelSize size) {
 void Editor::look_from(const stereo::SeenFrom& seen) {
   context_.view.seen = seen;
   const std::int64_t now = context_.clock.now_ns();
-  for (const auto& tool : tools_.all()) tool->look(now);
+  for (toolkit::MovesView* tool : tools_.with<toolkit::MovesView>()) tool->look(now);
 }
 
-void Editor::set_eyes_facts(std::optional<tools::EyesFacts> facts) {
+void Editor::set_eyes_facts(std::optional<toolkit::EyesFacts> facts) {
   if (facts == context_.view.eyes) return;
   context_.view.eyes = std::move(facts);
   ++context_.changes;
@@ -54,12 +56,12 @@ void Editor::set_panel(const render::PanelPlace& panel) {
 // --- following the model server ---
 
 Result<void> Editor::follow() {
-  tools::ModelLink& link = context_.link;
+  link::ModelLink& link = context_.link;
   if (!std::exchange(context_.follow_soon, false) && link.changes() == link_changes_) return {};
   link_changes_ = link.changes();
   ++context_.changes;
-  notices_.follow(link.document_number());
-  for (Notice& notice : link.take_notices()) notices_.take(std::move(notice));
+  notices_.follow(link.document.number());
+  for (Notice& notice : link.notices.take()) notices_.take(std::move(notice));
   for (const auto& tool : tools_.all())
     if (Result<void> prepared = tool->prepare(); !prepared) return prepared;
   take_newest();
@@ -70,27 +72,27 @@ Result<void> Editor::follow() {
 
 /// The newest state becomes the one that is shown.
 void Editor::take_newest() {
-  tools::ShownModel& shown = context_.shown;
-  const auto& next = context_.link.snapshot();
+  toolkit::ShownModel& shown = context_.shown;
+  const auto& next = context_.link.document.snapshot();
   if (next == shown.snapshot) return;
-  const bool other_document = next && (!shown.snapshot || shown.document_number != context_.link.document_number());
-  shown.document_number = context_.link.document_number();
+  const bool other_document = next && (!shown.snapshot || shown.document_number != context_.link.document.number());
+  shown.document_number = context_.link.document.number();
   shown.snapshot = next;
   // What stays within comfortable depth is what is shown now.
   if (const stereo::Box box = context_.renderer.bounds(); !box.empty()) context_.view.view.bounds = stereo::sphere_around(box);
   if (other_document) context_.selection.last_clicked.reset(), context_.selection.last_region.reset();
-  tools::take_model(context_);
+  toolkit::take_model(context_);
   if (!other_document) return;
   for (const auto& tool : tools_.all()) tool->document_changed();
 }
 
 // --- gestures and keys ---
 
-void Editor::gesture(const tools::Gesture& gesture) {
+void Editor::gesture(const input::Gesture& gesture) {
   ++context_.changes;
-  const std::optional<Pixel> picks = tools::picks_at(gesture);
-  if (picks && tools::is_beside(context_.view, *picks)) return cancel_gesture();
-  if (tools::asks_for_edit(gesture) && !tools_.allow_edit()) return;
+  const std::optional<Pixel> picks = input::picks_at(gesture);
+  if (picks && toolkit::is_beside(context_.view, *picks)) return cancel_gesture();
+  if (input::asks_for_edit(gesture) && !tools_.allow_edit()) return;
   tools_.gesture(gesture);
 }
 
@@ -99,9 +101,9 @@ void Editor::cancel_gesture() {
   ++context_.changes;
 }
 
-void Editor::command(const tools::Command& command, const Pointer& pointer) {
+void Editor::command(const input::Command& command, const Pointer& pointer) {
   ++context_.changes;
-  if (tools::binding_of(key_bindings(), command).asks_for_edit() && !tools_.allow_edit()) return;
+  if (input::binding_of(key_bindings(), command).asks_for_edit() && !tools_.allow_edit()) return;
   if (command.owner == kEditorName)
     own_command(command.number);
   else
@@ -110,8 +112,8 @@ void Editor::command(const tools::Command& command, const Pointer& pointer) {
 
 void Editor::own_command(std::uint8_t number) {
   switch (static_cast<EditorCommand>(number)) {
-    case EditorCommand::undo: tools::send(context_, mesh::document::Undo{}); break;
-    case EditorCommand::redo: tools::send(context_, mesh::document::Redo{}); break;
+    case EditorCommand::undo: toolkit::send(context_, mesh::document::Undo{}); break;
+    case EditorCommand::redo: toolkit::send(context_, mesh::document::Redo{}); break;
     case EditorCommand::cancel: cancel(false); break;
     case EditorCommand::stop_and_keep: cancel(true); break;
     case EditorCommand::menu: toggle_cover(Cover::menu); break;
@@ -124,18 +126,18 @@ void Editor::own_command(std::uint8_t number) {
   }
 }
 
-void Editor::toggle_cover(Cover cover) { tools::set_cover(context_, context_.open.cover == cover ? Cover::none : cover); }
+void Editor::toggle_cover(Cover cover) { toolkit::set_cover(context_, context_.open.cover == cover ? Cover::none : cover); }
 
 /// What lies on top goes first. `keep`: what a repair has reached.
 void Editor::cancel(bool keep) {
-  if (context_.link.can_stop()) return context_.link.stop(keep);
+  if (context_.link.connection.progress().can_stop()) return context_.link.connection.stop(keep);
   if (tools_.dragging()) return cancel_gesture();
-  if (Tool* asking = tools_.asking(); asking != nullptr)
-    asking->reply(tools::Reply::cancel);
+  if (AsksQuestions* asking = tools_.asking(); asking != nullptr)
+    asking->reply(panels::Reply::cancel);
   else if (context_.open.dialog.owner != nullptr)
-    tools::close_dialog(context_);
+    toolkit::close_dialog(context_);
   else if (context_.open.cover != Cover::none)
-    tools::set_cover(context_, Cover::none);
+    toolkit::set_cover(context_, Cover::none);
   else if (tools_.leave_mode())
     return;
   else if (!notices_.empty())
@@ -149,17 +151,17 @@ void Editor::panel_action(const std::function<void()>& action) {
   action();
 }
 
-void Editor::panel_command(const tools::Command& command) {
-  if (context_.open.cover == Cover::menu) tools::set_cover(context_, Cover::none);
+void Editor::panel_command(const input::Command& command) {
+  if (context_.open.cover == Cover::menu) toolkit::set_cover(context_, Cover::none);
   this->command(command, std::nullopt);
 }
 
 bool Editor::reply_by_key(display::Key key) {
-  Tool* asking = tools_.asking();
+  AsksQuestions* asking = tools_.asking();
   if (asking == nullptr) return false;
   const auto& choices = asking->question()->choices;
-  const auto chosen = std::find_if(choices.begin(), choices.end(), [&](const tools::Question::Choice& each) { return each.key == key; });
-  if (chosen == choices.end() || chosen->reply == tools::Reply::cancel) return false;
+  const auto chosen = std::find_if(choices.begin(), choices.end(), [&](const panels::Question::Choice& each) { return each.key == key; });
+  if (chosen == choices.end() || chosen->reply == panels::Reply::cancel) return false;
   asking->reply(chosen->reply);
   ++context_.changes;
   return true;
@@ -167,31 +169,31 @@ bool Editor::reply_by_key(display::Key key) {
 
 bool Editor::takes_numbers(const Pointer& pointer) const {
   if (dialog_open()) return false;
-  return std::any_of(tools_.all().begin(), tools_.all().end(), [&](const auto& tool) { return tool->takes_numbers(pointer); });
+  return std::ranges::any_of(tools_.with<TakesNumbers>(), [&](const TakesNumbers* tool) { return tool->takes_numbers(pointer); });
 }
 
 void Editor::begin_number(const std::string& text, const Pointer& pointer) {
-  for (const auto& tool : tools_.all())
+  for (TakesNumbers* tool : tools_.with<TakesNumbers>())
     if (tool->begin_number(text, pointer)) return;
 }
 
 // --- the picture ---
 
 render::Picture Editor::picture() const {
-  render::Picture picture = tools::plain_picture(context_.view);
+  render::Picture picture = toolkit::plain_picture(context_.view);
   for (const auto& tool : tools_.all()) tool->add_to_picture(picture);
   return picture;
 }
 
 void Editor::trace_picture() {
   if (!context_.trace.on()) return;
-  const stereo::Aim now = tools::aim(context_.view);
+  const stereo::Aim now = toolkit::aim(context_.view);
   const Eigen::Matrix4d clip = now.clip_from_deck();
   std::string text = fmt::format("aim {} {}", now.width, now.height);
   for (int i = 0; i < 16; ++i) text += fmt::format(" {}", clip.data()[i]);
   if (text != traced_aim_) context_.trace.line(traced_aim_ = text);
-  for (const auto& tool : tools_.all()) tool->trace_picture();
-  text = notices_.empty() ? "notice none" : tools::trace_of(notices_.front());
+  for (toolkit::TracesPicture* tool : tools_.with<toolkit::TracesPicture>()) tool->trace_picture();
+  text = notices_.empty() ? "notice none" : notices::trace_of(notices_.front());
   text.replace(0, std::string_view("notice").size(), "reads");
   if (text != traced_notice_) context_.trace.line(traced_notice_ = text);
 }

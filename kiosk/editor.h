@@ -9,27 +9,27 @@
 
 #include "base/clock.h"
 #include "kiosk/display/window.h"
+#include "kiosk/link/model_link.h"
+#include "kiosk/notices/notices.h"
+#include "kiosk/notices/trace.h"
 #include "kiosk/render/renderer.h"
 #include "kiosk/stereo/tracked_eyes.h"
-#include "kiosk/tools/model_link.h"
-#include "kiosk/tools/notices.h"
-#include "kiosk/tools/tool_context.h"
-#include "kiosk/tools/tool_set.h"
-#include "kiosk/tools/trace.h"
+#include "kiosk/toolkit/tool_context.h"
+#include "kiosk/toolkit/tool_set.h"
 
 namespace prismesh::kiosk {
 
 /// The services that the editor works with.
 struct EditorServices {
-  tools::ModelLink& link;
+  link::ModelLink& link;
   render::Renderer& renderer;
   Clock& clock;
-  tools::Trace trace;
+  notices::Trace trace;
 };
 
 class Editor {
  public:
-  Editor(const stereo::Profile& profile, const tools::ToolOptions& options, const EditorServices& services);
+  Editor(const stereo::Profile& profile, const toolkit::ToolOptions& options, const EditorServices& services);
   Editor(const Editor&) = delete;
   Editor& operator=(const Editor&) = delete;
 
@@ -38,34 +38,34 @@ class Editor {
   void set_covered_width(double pixels) { context_.view.covered_width = pixels; }
   /// What the next picture is drawn for. Depth follows.
   void look_from(const stereo::SeenFrom& seen);
-  void set_eyes_facts(std::optional<tools::EyesFacts> facts);
+  void set_eyes_facts(std::optional<toolkit::EyesFacts> facts);
   void set_panel(const render::PanelPlace& panel);
   /// Follows the model server: its generation, its drag, its notices. Errors: a model too large for the GPU.
   Result<void> follow();
 
-  tools::Under under(const tools::Pixel& pixel) const { return tools_.under(pixel); }  ///< panels don't count
-  void gesture(const tools::Gesture& gesture);
+  input::Under under(const input::Pixel& pixel) const { return tools_.under(pixel); }  ///< panels don't count
+  void gesture(const input::Gesture& gesture);
   void cancel_gesture();
   /// Carries out a command; those of the window do nothing.
-  void command(const tools::Command& command, const tools::Pointer& pointer);
+  void command(const input::Command& command, const toolkit::Pointer& pointer);
   /// Carries out what was asked for on a panel.
   void panel_action(const std::function<void()>& action);
   /// A panel asks for a command.
-  void panel_command(const tools::Command& command);
+  void panel_command(const input::Command& command);
 
   bool dialog_open() const { return context_.open.dialog.owner != nullptr || tools_.asking() != nullptr; }
   /// Replies to the question that is asked, if the key does that.
   bool reply_by_key(display::Key key);
   /// Whether a typed digit begins a number.
-  bool takes_numbers(const tools::Pointer& pointer) const;
+  bool takes_numbers(const toolkit::Pointer& pointer) const;
   /// `text`: typed so far.
-  void begin_number(const std::string& text, const tools::Pointer& pointer);
+  void begin_number(const std::string& text, const toolkit::Pointer& pointer);
 
   render::Picture picture() const;
   void set_report(const render::DrawReport& report) { context_.glyphs_left_out = report.glyphs_left_out; }
   /// What the panels show.
-  tools::ToolContext& context() { return context_; }
-  const tools::ToolContext& context() const { return context_; }
+  toolkit::ToolContext& context() { return context_; }
+  const toolkit::ToolContext& context() const { return context_; }
   const stereo::Profile& profile() const { return context_.view.profile; }
   /// Counts up with each change of the picture or the panels.
   std::uint64_t changes() const { return context_.changes; }
@@ -75,12 +75,12 @@ class Editor {
  private:
   void take_newest();
   void own_command(std::uint8_t number);
-  void toggle_cover(tools::Cover cover);
+  void toggle_cover(toolkit::Cover cover);
   void cancel(bool keep);
 
-  tools::Notices notices_;
-  tools::ToolSet tools_;
-  tools::ToolContext context_;
+  notices::Notices notices_;
+  toolkit::ToolSet tools_;
+  toolkit::ToolContext context_;
   std::uint64_t link_changes_ = 0;  ///< followed so far
   std::string traced_aim_;
   std::string traced_notice_ = "reads none";

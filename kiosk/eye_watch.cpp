@@ -9,7 +9,7 @@ namespace {
 
 using drivers::prism_servo::MaskPhase;
 using ipc::EyesPhase;
-using tools::EyesFacts;
+using toolkit::EyesFacts;
 
 /// The tracker in a few words, and what the user can do about it.
 void word_eyes(EyesPhase phase, const ipc::DeviceInfo* tracker, EyesFacts& facts) {
@@ -62,7 +62,7 @@ void word_mask(MaskPhase phase, const ipc::DeviceInfo* servo, EyesFacts& facts) 
 
 }  // namespace
 
-EyeWatch::EyeWatch(const stereo::FollowOptions& options, DeviceLink& link, Clock& clock, tools::Trace trace)
+EyeWatch::EyeWatch(const stereo::FollowOptions& options, DeviceLink& link, Clock& clock, notices::Trace trace)
     : link_(link), clock_(clock), trace_(trace), eyes_(options) {}
 
 void EyeWatch::set_options(const stereo::FollowOptions& options) {

@@ -9,16 +9,16 @@
 
 #include "base/clock.h"
 #include "kiosk/device_link.h"
+#include "kiosk/notices/trace.h"
 #include "kiosk/stereo/lit_time.h"
 #include "kiosk/stereo/tracked_eyes.h"
-#include "kiosk/tools/eyes_facts.h"
-#include "kiosk/tools/trace.h"
+#include "kiosk/toolkit/eyes_facts.h"
 
 namespace prismesh::kiosk {
 
 class EyeWatch {
  public:
-  EyeWatch(const stereo::FollowOptions& options, DeviceLink& link, Clock& clock, tools::Trace trace);
+  EyeWatch(const stereo::FollowOptions& options, DeviceLink& link, Clock& clock, notices::Trace trace);
 
   /// Sets another display profile, or fixed eyes.
   void set_options(const stereo::FollowOptions& options);
@@ -45,17 +45,17 @@ class EyeWatch {
   std::int64_t lit_ns() const { return lit_.from_ns; }
 
   /// The facts for the panel; nothing while no eyes are followed.
-  std::optional<tools::EyesFacts> facts() const { return facts_; }
+  std::optional<toolkit::EyesFacts> facts() const { return facts_; }
 
  private:
   void note_shown(std::int64_t lit_ns);
   void tell(std::int64_t now_ns);
   void trace_phase(const stereo::DeviceReading& reading, std::int64_t now_ns);
-  std::optional<tools::EyesFacts> word(const stereo::DeviceReading& reading) const;
+  std::optional<toolkit::EyesFacts> word(const stereo::DeviceReading& reading) const;
 
   DeviceLink& link_;
   Clock& clock_;
-  tools::Trace trace_;
+  notices::Trace trace_;
   stereo::TrackedEyes eyes_;
   stereo::PictureTiming timing_{{}};
   stereo::LitTime lit_;
@@ -63,7 +63,7 @@ class EyeWatch {
   stereo::SeenFrom seen_;
   std::optional<stereo::SeenFrom> shown_;    ///< what the picture on the display was drawn for
   std::optional<std::int64_t> mono_lit_ns_;  ///< from when on nothing but mono is seen; to be told to the daemon then
-  std::optional<tools::EyesFacts> facts_;
+  std::optional<toolkit::EyesFacts> facts_;
   std::optional<ipc::EyesPhase> traced_phase_;
   std::optional<bool> traced_mono_;
 };

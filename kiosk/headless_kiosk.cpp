@@ -26,9 +26,10 @@ HeadlessKiosk::HeadlessKiosk(const AppOptions& options, Station& station, const 
 
 /// Whether the picture shows what was asked for, or nothing more will come.
 bool HeadlessKiosk::settled() const {
-  const tools::ModelLink& link = station_.link;
-  if (!link.connected() || !link.state() || !link.busy().empty() || !link.up_to_date()) return false;
-  if ((options_.deck || link.state()->open) && link.snapshot() == nullptr) return false;
+  const link::ModelLink& link = station_.link;
+  if (!link.connection.connected() || !link.document.state() || !link.connection.progress().words().empty() || !link.document.up_to_date())
+    return false;
+  if ((options_.deck || link.document.state()->open) && link.document.snapshot() == nullptr) return false;
   // Without a daemon, or with a tracker that sees nobody, a picture in mono is all there is.
   return !station_.eyes.follows() || !station_.devices.connected() || station_.eyes.seen().depth_share >= 1;
 }
@@ -48,7 +49,7 @@ Result<void> HeadlessKiosk::run() {
     if (now >= station_.eyes.next_look_ns()) {
       station_.look();
       begun = begun || settled() || now - started >= kPatienceNs;
-      if (const auto& model = station_.link.snapshot()) watch_.draws(model->shell_count());
+      if (const auto& model = station_.link.document.snapshot()) watch_.draws(model->shell_count());
       if (begun && now >= due && taken_ < options_.headless_frames) {
         if (Result<void> shot = shoot(); !shot) return shot;
         watch_.shown();

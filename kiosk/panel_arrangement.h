@@ -4,23 +4,23 @@
 
 #include <span>
 
-#include "kiosk/tools/mouse_layout.h"
-#include "kiosk/tools/panel_layout.h"
-#include "kiosk/tools/tool_context.h"
+#include "kiosk/input/mouse_layout.h"
+#include "kiosk/panels/panel_layout.h"
+#include "kiosk/toolkit/tool_context.h"
 
 namespace prismesh::kiosk {
 
 class PanelArrangement {
  public:
   /// Lays all panels out (inside Gui::layout); what the user asked for goes into the layout. `mouse`: what the mouse does, for the help.
-  void build(tools::ToolContext& context, std::span<const tools::MouseBinding> mouse, tools::PanelLayout& layout);
+  void build(toolkit::ToolContext& context, std::span<const input::MouseBinding> mouse, panels::PanelLayout& layout);
   /// Pixels of the picture's width that the panels at the sides take.
   double covered_width() const { return covered_width_; }
 
  private:
-  void build_box(tools::ToolContext& context, tools::PanelLayout& layout);
+  void build_box(toolkit::ToolContext& context, panels::PanelLayout& layout);
 
-  tools::OpenPanels::Dialog shown_dialog_;
+  toolkit::OpenPanels::Dialog shown_dialog_;
   double covered_width_ = 0;
 };
 

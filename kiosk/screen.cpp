@@ -4,7 +4,7 @@
 
 namespace prismesh::kiosk {
 
-Screen::Screen(panels::Gui gui, std::vector<tools::MouseBinding> mouse, Editor& editor)
+Screen::Screen(panels::Gui gui, std::vector<input::MouseBinding> mouse, Editor& editor)
     : gui_(std::move(gui)), mouse_(std::move(mouse)), editor_(editor), laid_out_ns_(editor.context().clock.now_ns()) {}
 
 void Screen::set_size(display::PixelSize size) {
@@ -15,7 +15,7 @@ void Screen::set_size(display::PixelSize size) {
 Result<void> Screen::lay_out() {
   if (Result<void> type = gui_.set_type(editor_.profile().stereo() ? panels::kStereoType : panels::kFlatType); !type) return type;
   const std::int64_t now = editor_.context().clock.now_ns();
-  tools::PanelLayout layout{size_, [this](const tools::Command& command) { editor_.panel_command(command); }};
+  panels::PanelLayout layout{size_, [this](const input::Command& command) { editor_.panel_command(command); }};
   gui_.layout(size_, static_cast<double>(now - std::exchange(laid_out_ns_, now)) * 1e-9, [&] {
     panels_.build(editor_.context(), mouse_, layout);
     if (pointer_) panels::draw_pointer(pointer_->x(), pointer_->y());
@@ -25,7 +25,7 @@ Result<void> Screen::lay_out() {
   return {};
 }
 
-Result<void> Screen::draw(unsigned framebuffer, const std::optional<tools::Pixel>& pointer, bool moving) {
+Result<void> Screen::draw(unsigned framebuffer, const std::optional<input::Pixel>& pointer, bool moving) {
   pointer_ = pointer;
   // Panels that fit their content have their size after the second time.
   for (int round = 0; round < 2; ++round)

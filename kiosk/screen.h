@@ -14,7 +14,7 @@ namespace prismesh::kiosk {
 
 class Screen {
  public:
-  Screen(panels::Gui gui, std::vector<tools::MouseBinding> mouse, Editor& editor);
+  Screen(panels::Gui gui, std::vector<input::MouseBinding> mouse, Editor& editor);
 
   panels::Gui& gui() { return gui_; }
   void set_size(display::PixelSize size);
@@ -25,15 +25,15 @@ class Screen {
   Result<void> lay_out();
   /// `pointer`: drawn into the picture, where the display has none of its own or that would lie on the woven picture.
   /// `moving`: draws for speed, see render::Picture.
-  Result<void> draw(unsigned framebuffer, const std::optional<tools::Pixel>& pointer, bool moving);
+  Result<void> draw(unsigned framebuffer, const std::optional<input::Pixel>& pointer, bool moving);
 
  private:
   panels::Gui gui_;
-  std::vector<tools::MouseBinding> mouse_;  ///< what the mouse does, in words
+  std::vector<input::MouseBinding> mouse_;  ///< what the mouse does, in words
   PanelArrangement panels_;
   Editor& editor_;
   display::PixelSize size_{1, 1};
-  std::optional<tools::Pixel> pointer_;
+  std::optional<input::Pixel> pointer_;
   std::int64_t laid_out_ns_ = 0;
 };
 

@@ -5,7 +5,7 @@
 
 #include "base/clock.h"
 #include "kiosk/display/link_check.h"
-#include "kiosk/tools/history_file.h"
+#include "kiosk/toolkit/history_file.h"
 
 namespace prismesh::kiosk {
 
@@ -22,7 +22,7 @@ stereo::FollowOptions follow_options(const stereo::Profile& profile, bool fixed_
 }
 
 std::filesystem::path expressions_file() {
-  const std::filesystem::path folder = tools::kiosk_state_folder();
+  const std::filesystem::path folder = toolkit::kiosk_state_folder();
   return folder.empty() ? folder : folder / "expressions";
 }
 

@@ -10,10 +10,10 @@
 #include "kiosk/display/monitor.h"
 #include "kiosk/editor.h"
 #include "kiosk/eye_watch.h"
+#include "kiosk/input/mouse_layout.h"
+#include "kiosk/link/model_link.h"
+#include "kiosk/notices/trace.h"
 #include "kiosk/screen.h"
-#include "kiosk/tools/model_link.h"
-#include "kiosk/tools/mouse_layout.h"
-#include "kiosk/tools/trace.h"
 
 namespace prismesh::kiosk {
 
@@ -21,7 +21,7 @@ struct StationOptions {
   std::optional<std::filesystem::path> runtime_dir;  ///< where the daemons' sockets are
   std::optional<std::filesystem::path> deck;         ///< opened at the start
   stereo::Profile profile;
-  tools::MouseLayout mouse = tools::default_mouse_layout();
+  input::MouseLayout mouse = input::default_mouse_layout();
   std::optional<mesh::Vec3> fixed_eyes_mm;  ///< between the eyes; goes before what a tracker says
   double panel_latency_ms = 10;
   bool trace = false;
@@ -34,9 +34,9 @@ inline const mesh::Vec3 kRestingEyesMm(0, 0, 650);
 /// Needs a current GL context for all of its life.
 struct Station {
   MonotonicClock clock;
-  tools::Trace trace;
-  tools::MouseLayout mouse;
-  tools::ModelLink link;
+  notices::Trace trace;
+  input::MouseLayout mouse;
+  link::ModelLink link;
   DeviceLink devices;
   EyeWatch eyes;
   std::unique_ptr<render::Renderer> renderer;

@@ -14,12 +14,12 @@ namespace prismesh::kiosk {
 namespace {
 
 struct ListedTool {
-  std::span<const tools::KeyBinding> keys;
-  std::unique_ptr<tools::Tool> (*make)(tools::ToolContext&) = nullptr;  ///< null: a table of the editor
+  std::span<const input::KeyBinding> keys;
+  std::unique_ptr<toolkit::Tool> (*make)(toolkit::ToolContext&) = nullptr;  ///< null: a table of the editor
 };
 
 template <class Made>
-std::unique_ptr<tools::Tool> make(tools::ToolContext& context) {
+std::unique_ptr<toolkit::Tool> make(toolkit::ToolContext& context) {
   return std::make_unique<Made>(context);
 }
 
@@ -43,16 +43,16 @@ const std::vector<ListedTool>& listed_tools() {
 
 }  // namespace
 
-std::vector<std::unique_ptr<tools::Tool>> make_tools(tools::ToolContext& context) {
-  std::vector<std::unique_ptr<tools::Tool>> made;
+std::vector<std::unique_ptr<toolkit::Tool>> make_tools(toolkit::ToolContext& context) {
+  std::vector<std::unique_ptr<toolkit::Tool>> made;
   for (const ListedTool& listed : listed_tools())
     if (listed.make != nullptr) made.push_back(listed.make(context));
   return made;
 }
 
-std::span<const tools::KeyBinding> key_bindings() {
-  static const std::vector<tools::KeyBinding> kAll = [] {
-    std::vector<tools::KeyBinding> all;
+std::span<const input::KeyBinding> key_bindings() {
+  static const std::vector<input::KeyBinding> kAll = [] {
+    std::vector<input::KeyBinding> all;
     for (const ListedTool& listed : listed_tools()) all.insert(all.end(), listed.keys.begin(), listed.keys.end());
     return all;
   }();

@@ -10,9 +10,9 @@
 
 #include "kiosk/display/monitor.h"
 #include "kiosk/editor_keys.h"
+#include "kiosk/input/key_table.h"
 #include "kiosk/tool_list.h"
 #include "kiosk/tools/files/files_tool.h"
-#include "kiosk/tools/key_table.h"
 
 namespace prismesh::kiosk {
 
@@ -46,7 +46,7 @@ Result<void> WindowedKiosk::run() {
     }
     rest_traced_ = rest_traced_ && events->empty();
     if (Result<void> turned = station_.turn(); !turned) return turned;
-    if (const auto& model = station_.link.snapshot()) watch_.draws(model->shell_count());
+    if (const auto& model = station_.link.document.snapshot()) watch_.draws(model->shell_count());
     const Result<bool> drawn = beat();
     if (!drawn) return fail(drawn.error());
     if (*drawn) watch_.shown();
@@ -85,7 +85,7 @@ Result<void> WindowedKiosk::take(const display::WindowEvent& event) {
   dirty_ = true;
   if (const auto* wheel = std::get_if<display::WheelTurned>(&event)) {
     const bool panel = station_.screen.gui().on_panel(wheel->x, wheel->y);
-    gestures(gestures_.wheel(*wheel, panel ? tools::Under::panel : tools::Under::picture));
+    gestures(gestures_.wheel(*wheel, panel ? input::Under::panel : input::Under::picture));
     if (!panel) wheel_rest_ns_ = station_.clock.now_ns() + kWheelRestNs;
   } else if (const auto* resized = std::get_if<display::Resized>(&event)) {
     station_.screen.set_size(resized->size);
@@ -108,7 +108,7 @@ Result<void> WindowedKiosk::take_button(const display::ButtonChanged& event) {
   station_.screen.gui().feed(event);
   edge_fed_ = dirty_ = true;
   const bool panel = station_.screen.gui().on_panel(event.x, event.y);
-  const tools::Under under = panel ? tools::Under::panel : station_.editor.under({event.x, event.y});
+  const input::Under under = panel ? input::Under::panel : station_.editor.under({event.x, event.y});
   gestures(gestures_.button(event, under));
   return {};
 }
@@ -125,7 +125,7 @@ Result<void> WindowedKiosk::take_key(const display::KeyChanged& event) {
   }
   const bool digit = event.key >= display::Key::digit_0 && event.key <= display::Key::digit_9;
   if (digit && !event.modifiers.ctrl && !event.modifiers.alt && station_.editor.takes_numbers(pointer_on_picture())) return {};
-  const tools::KeyBinding* binding = tools::binding_for(key_bindings(), event.key, event.modifiers);
+  const input::KeyBinding* binding = input::binding_for(key_bindings(), event.key, event.modifiers);
   if (binding == nullptr || (event.repeat && !binding->repeats())) return {};
   const bool cancels =
       binding->command == command_of(EditorCommand::cancel) || binding->command == command_of(EditorCommand::stop_and_keep);
@@ -148,7 +148,7 @@ Result<void> WindowedKiosk::give_field_the_keyboard() {
 Result<void> WindowedKiosk::take_text(const display::TextTyped& event) {
   if (std::exchange(swallow_text_, false)) return {};
   dirty_ = true;
-  if (!station_.screen.gui().wants_keys() && tools::begins_number(event.text) && station_.editor.takes_numbers(pointer_on_picture())) {
+  if (!station_.screen.gui().wants_keys() && input::begins_number(event.text) && station_.editor.takes_numbers(pointer_on_picture())) {
     station_.editor.begin_number(event.text, pointer_on_picture());
     return give_field_the_keyboard();
   }
@@ -156,7 +156,7 @@ Result<void> WindowedKiosk::take_text(const display::TextTyped& event) {
   return {};
 }
 
-void WindowedKiosk::do_command(const tools::Command& command) {
+void WindowedKiosk::do_command(const input::Command& command) {
   if (command == command_of(EditorCommand::fullscreen))
     window_.set_fullscreen(fullscreen_ = !fullscreen_);
   else if (command == command_of(EditorCommand::rearm))
@@ -165,8 +165,8 @@ void WindowedKiosk::do_command(const tools::Command& command) {
     station_.editor.command(command, pointer_on_picture());
 }
 
-std::optional<tools::Pixel> WindowedKiosk::pointer_on_picture() const {
-  const std::optional<tools::Pixel> at = gestures_.position();
+std::optional<input::Pixel> WindowedKiosk::pointer_on_picture() const {
+  const std::optional<input::Pixel> at = gestures_.position();
   return at && !station_.screen.gui().on_panel(at->x(), at->y()) ? at : std::nullopt;
 }
 
@@ -181,7 +181,7 @@ Result<void> WindowedKiosk::show() {
   window_.show_pointer(!station_.editor.profile().stereo());
   const auto& shown = station_.editor.context().shown.snapshot;
   shown_moving_ = moving() && shown && shown->shell_count() > kManyShells;
-  const std::optional<tools::Pixel> pointer = draws_pointer() ? gestures_.position() : std::nullopt;
+  const std::optional<input::Pixel> pointer = draws_pointer() ? gestures_.position() : std::nullopt;
   if (Result<void> drawn = station_.screen.draw(0, pointer, shown_moving_); !drawn) return drawn;
   if (station_.eyes.watches()) window_.finish();
   station_.eyes.drawn(station_.eyes.watches() ? window_.last_refresh_ns() : std::nullopt);
@@ -202,7 +202,7 @@ void WindowedKiosk::trace_picture() {
 }
 
 void WindowedKiosk::trace_rest() {
-  const std::optional<tools::Pixel> at = gestures_.position();
+  const std::optional<input::Pixel> at = gestures_.position();
   const std::string where = at ? fmt::format("{} {}", at->x(), at->y()) : "none";
   station_.trace.line(fmt::format("rests presses {} releases {} pointer {}", presses_, releases_, where));
 }
@@ -221,7 +221,7 @@ std::int64_t WindowedKiosk::patience_ns() const {
 
 void WindowedKiosk::wait() {
   std::array<pollfd, 3> watched{
-      {{window_.descriptor(), POLLIN, 0}, {station_.link.descriptor(), POLLIN, 0}, {station_.devices.descriptor(), POLLIN, 0}}};
+      {{window_.descriptor(), POLLIN, 0}, {station_.link.connection.descriptor(), POLLIN, 0}, {station_.devices.descriptor(), POLLIN, 0}}};
   const std::int64_t patience = patience_ns();
   const bool caret = station_.screen.gui().wants_keys();
   const timespec most{patience / 1'000'000'000, patience % 1'000'000'000};

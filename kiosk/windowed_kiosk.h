@@ -3,9 +3,9 @@
 #pragma once
 
 #include "kiosk/display/window.h"
+#include "kiosk/input/gestures.h"
 #include "kiosk/picture_watch.h"
 #include "kiosk/station.h"
-#include "kiosk/tools/gestures.h"
 
 namespace prismesh::kiosk {
 
@@ -22,7 +22,7 @@ class WindowedKiosk {
   Result<void> take_key(const display::KeyChanged& event);
   Result<void> take_text(const display::TextTyped& event);
   Result<void> give_field_the_keyboard();
-  void do_command(const tools::Command& command);
+  void do_command(const input::Command& command);
   Result<void> settle();
   void find_place() { station_.place(window_.monitor(), window_.position()); }
   /// The display's own pointer isn't woven, and some displays have none.
@@ -39,14 +39,14 @@ class WindowedKiosk {
   void trace_rest();
   void wait();
   std::int64_t patience_ns() const;
-  std::optional<tools::Pixel> pointer_on_picture() const;
-  void gestures(const std::vector<tools::Gesture>& made) {
-    for (const tools::Gesture& gesture : made) station_.editor.gesture(gesture);
+  std::optional<input::Pixel> pointer_on_picture() const;
+  void gestures(const std::vector<input::Gesture>& made) {
+    for (const input::Gesture& gesture : made) station_.editor.gesture(gesture);
   }
 
   display::Window& window_;
   Station& station_;
-  tools::Gestures gestures_;
+  input::Gestures gestures_;
   bool swallow_text_ = false;  ///< the text of the key that opened a field is dropped
   bool edge_fed_ = false;      ///< the panels haven't handled a press or release yet
   bool dirty_ = true;

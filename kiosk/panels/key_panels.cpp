@@ -12,7 +12,7 @@
 namespace prismesh::kiosk::panels {
 namespace {
 
-using tools::KeyBinding;
+using input::KeyBinding;
 
 /// Two columns, `width` pixels wide from `x`: what to press, and what it does.
 template <class Bindings, class Left>
@@ -36,7 +36,7 @@ void binding_list(const char* title, const Bindings& bindings, const Left& left,
 
 }  // namespace
 
-void help_panel(std::span<const KeyBinding> keys, std::span<const tools::MouseBinding> mouse, display::PixelSize picture) {
+void help_panel(std::span<const KeyBinding> keys, std::span<const input::MouseBinding> mouse, display::PixelSize picture) {
   const float widest = static_cast<float>(picture.width) - 2 * kMargin, highest = static_cast<float>(picture.height) - 2 * kMargin;
   const float width = on_grid(std::min(ImGui::GetFontSize() * 76, widest)), half = (width - 6 * kGrid) / 2;
   ImGui::SetNextWindowSizeConstraints(ImVec2(width, 0), ImVec2(width, highest));
@@ -48,13 +48,13 @@ void help_panel(std::span<const KeyBinding> keys, std::span<const tools::MouseBi
   const float bottom = ImGui::GetCursorPosY();
   ImGui::SetCursorPosY(top);
   binding_list(
-      "Mouse", mouse, [](const tools::MouseBinding& binding) { return std::string_view(binding.gesture); }, half + 4 * kGrid, half);
+      "Mouse", mouse, [](const input::MouseBinding& binding) { return std::string_view(binding.gesture); }, half + 4 * kGrid, half);
   ImGui::SetCursorPosY(std::max(bottom, ImGui::GetCursorPosY()));
   ImGui::PopStyleVar();
   ImGui::End();
 }
 
-void menu_panel(std::span<const KeyBinding> all, tools::PanelLayout& layout) {
+void menu_panel(std::span<const KeyBinding> all, PanelLayout& layout) {
   constexpr int kColumns = 3;
   const float widest = static_cast<float>(layout.picture.width) - 2 * kMargin,
               highest = static_cast<float>(layout.picture.height) - 2 * kMargin;
@@ -63,9 +63,9 @@ void menu_panel(std::span<const KeyBinding> all, tools::PanelLayout& layout) {
   begin_centred("Menu", layout.picture, width);
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(kGrid, kGrid / 4));
   ImGui::Columns(kColumns, nullptr, false);
-  const std::size_t lines = all.size() + 2 * tools::kMenuNames.size();
+  const std::size_t lines = all.size() + 2 * input::kMenuNames.size();
   std::size_t line = 0, column = 0;
-  for (std::size_t m = 0; m < tools::kMenuNames.size(); ++m) {
+  for (std::size_t m = 0; m < input::kMenuNames.size(); ++m) {
     const auto entries = static_cast<std::size_t>(
         std::count_if(all.begin(), all.end(), [&](const KeyBinding& binding) { return static_cast<std::size_t>(binding.menu) == m; }));
     // A menu stays whole: where half of it or more would hang over, it goes into the next column.
@@ -75,7 +75,7 @@ void menu_panel(std::span<const KeyBinding> all, tools::PanelLayout& layout) {
     }
     line += entries + 2;
     ImGui::PushFont(title_font());
-    ImGui::TextUnformatted(tools::kMenuNames[m].data());
+    ImGui::TextUnformatted(input::kMenuNames[m].data());
     ImGui::PopFont();
     for (const KeyBinding& binding : all) {
       if (static_cast<std::size_t>(binding.menu) != m) continue;

@@ -4,14 +4,14 @@
 #include <span>
 
 #include "kiosk/display/window.h"
-#include "kiosk/tools/command.h"
-#include "kiosk/tools/mouse_layout.h"
-#include "kiosk/tools/panel_layout.h"
+#include "kiosk/input/command.h"
+#include "kiosk/input/mouse_layout.h"
+#include "kiosk/panels/panel_layout.h"
 
 namespace prismesh::kiosk::panels {
 
-void help_panel(std::span<const tools::KeyBinding> keys, std::span<const tools::MouseBinding> mouse, display::PixelSize picture);
+void help_panel(std::span<const input::KeyBinding> keys, std::span<const input::MouseBinding> mouse, display::PixelSize picture);
 /// All commands in columns, menu by menu; a click does one.
-void menu_panel(std::span<const tools::KeyBinding> all, tools::PanelLayout& layout);
+void menu_panel(std::span<const input::KeyBinding> all, PanelLayout& layout);
 
 }  // namespace prismesh::kiosk::panels

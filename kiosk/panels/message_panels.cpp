@@ -10,7 +10,7 @@
 
 namespace prismesh::kiosk::panels {
 
-using tools::Notice;
+using notices::Notice;
 
 NoticeReply notice_panel(const NoticeFacts& facts, display::PixelSize picture, const NoticePlace& place) {
   NoticeReply reply = NoticeReply::none;

@@ -13,7 +13,7 @@ namespace prismesh::kiosk::panels {
 struct NoticePlace {
   bool between_panels = false;             ///< there are panels at the sides
   double bottom = 0;                       ///< pixels: the lower edge
-  const tools::KeyBinding& list_warnings;  ///< for the hint of its button
+  const input::KeyBinding& list_warnings;  ///< for the hint of its button
 };
 enum class NoticeReply : std::uint8_t { none, read, list_warnings };
 NoticeReply notice_panel(const NoticeFacts& facts, display::PixelSize picture, const NoticePlace& place);

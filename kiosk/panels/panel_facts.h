@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "kiosk/tools/notice.h"
+#include "kiosk/notices/notice.h"
 
 namespace prismesh::kiosk::panels {
 
@@ -36,7 +36,7 @@ struct StateFacts {
 
 /// The notice to be read next, and the number of those behind it.
 struct NoticeFacts {
-  tools::Notice notice;
+  notices::Notice notice;
   std::size_t more = 0;
 };
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kMaxPaths = 6;  ///< of a list; the others are counted
 
-void path_list(const tools::Question::List& list) {
+void path_list(const Question::List& list) {
   ImGui::TextUnformatted(list.heading.c_str());
   const std::size_t shown = list.paths.size() > kMaxPaths ? kMaxPaths - 1 : list.paths.size();
   ImGui::Indent(2 * kGrid);
@@ -23,8 +23,8 @@ void path_list(const tools::Question::List& list) {
 
 }  // namespace
 
-std::optional<tools::Reply> question_box(const tools::Question& question, display::PixelSize picture) {
-  std::optional<tools::Reply> reply;
+std::optional<Reply> question_box(const Question& question, display::PixelSize picture) {
+  std::optional<Reply> reply;
   begin_centred("Question", picture, ImGui::GetFontSize() * 40);
   ImGui::PushFont(title_font());
   ImGui::TextWrapped("%s", printable(question.title).c_str());
@@ -34,9 +34,9 @@ std::optional<tools::Reply> question_box(const tools::Question& question, displa
     ImGui::TextWrapped("%s", printable(question.text).c_str());
     ImGui::Dummy(ImVec2(0, kGrid / 2));
   }
-  for (const tools::Question::List& list : question.lists) path_list(list);
+  for (const Question::List& list : question.lists) path_list(list);
   float free = 0;  // width left in the line of buttons
-  for (const tools::Question::Choice& choice : question.choices) {
+  for (const Question::Choice& choice : question.choices) {
     const std::string label = printable(fmt::format("{}  ({})", choice.label, choice.key_name));
     const float width = ImGui::CalcTextSize(label.c_str()).x + 2 * ImGui::GetStyle().FramePadding.x;
     if (free >= kGrid + width)

@@ -4,11 +4,11 @@
 #include <optional>
 
 #include "kiosk/display/window.h"
-#include "kiosk/tools/question.h"
+#include "kiosk/panels/question.h"
 
 namespace prismesh::kiosk::panels {
 
 /// Lays the box out (inside Gui::layout). Returns the reply that was chosen.
-std::optional<tools::Reply> question_box(const tools::Question& question, display::PixelSize picture);
+std::optional<Reply> question_box(const Question& question, display::PixelSize picture);
 
 }  // namespace prismesh::kiosk::panels

@@ -11,7 +11,7 @@
 namespace prismesh::kiosk::panels {
 namespace {
 
-using tools::ToldWarning;
+using notices::ToldWarning;
 
 /// The text in lines that are not wider than `width`.
 std::string lines_of(const std::string& text, float width) {
@@ -56,8 +56,8 @@ void warnings_panel(std::span<const ToldWarning> warnings, const std::string& de
   elided_text("Warnings of " + printable(std::filesystem::path(deck).filename().string()), ImGui::GetContentRegionAvail().x);
   ImGui::PopFont();
   ImGui::PushFont(small_font());
-  ImGui::TextDisabled("%s. %sCtrl+I or Esc closes.", warnings.empty() ? "Nothing is wrong" : tools::counts_of(warnings).c_str(),
-                      tools::error_count(warnings) > 0 ? "Errors first: because of them the model isn't all of the deck. " : "");
+  ImGui::TextDisabled("%s. %sCtrl+I or Esc closes.", warnings.empty() ? "Nothing is wrong" : notices::counts_of(warnings).c_str(),
+                      notices::error_count(warnings) > 0 ? "Errors first: because of them the model isn't all of the deck. " : "");
   ImGui::PopFont();
   Columns columns;
   columns.sign = ImGui::GetFontSize() * 0.75f + kGrid;

@@ -5,11 +5,11 @@
 #include <string>
 
 #include "kiosk/display/window.h"
-#include "kiosk/tools/deck_warnings.h"
+#include "kiosk/notices/deck_warnings.h"
 
 namespace prismesh::kiosk::panels {
 
 /// Lays the list out (inside Gui::layout). `deck`: its path.
-void warnings_panel(std::span<const tools::ToldWarning> warnings, const std::string& deck, display::PixelSize picture);
+void warnings_panel(std::span<const notices::ToldWarning> warnings, const std::string& deck, display::PixelSize picture);
 
 }  // namespace prismesh::kiosk::panels

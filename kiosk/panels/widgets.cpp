@@ -4,7 +4,7 @@
 
 namespace prismesh::kiosk::panels {
 
-void setting(const char* label, const std::string& value, const tools::KeyBinding& next, tools::PanelLayout& layout) {
+void setting(const char* label, const std::string& value, const input::KeyBinding& next, PanelLayout& layout) {
   ImGui::PushID(label);
   ImGui::AlignTextToFramePadding();
   ImGui::TextDisabled("%s", label);
@@ -16,12 +16,12 @@ void setting(const char* label, const std::string& value, const tools::KeyBindin
   ImGui::PopID();
 }
 
-void hint(const tools::KeyBinding& binding) {
+void hint(const input::KeyBinding& binding) {
   if (!ImGui::IsItemHovered()) return;
   ImGui::SetTooltip("%s (%s)", std::string(binding.meaning).c_str(), std::string(binding.label).c_str());
 }
 
-void check(const char* label, bool value, const tools::Command& toggle, tools::PanelLayout& layout) {
+void check(const char* label, bool value, const input::Command& toggle, PanelLayout& layout) {
   bool now = value;
   if (ImGui::Checkbox(label, &now)) layout.ask(toggle);
 }

@@ -101,6 +101,20 @@ TEST(IncludeRules, modules_of_the_mesh_keep_their_order) {
   EXPECT_FALSE(may_include("mesh/model", "mesh/no_such_module"));
 }
 
+TEST(IncludeRules, panels_and_link_know_no_tool_and_tools_not_each_other) {
+  for (const char* tool : {"kiosk/tools/files", "kiosk/tools/shaping"}) {
+    for (const char* below : {"kiosk/toolkit", "kiosk/panels", "kiosk/link", "kiosk/input", "kiosk/notices"}) {
+      EXPECT_TRUE(may_include(tool, below)) << tool << " " << below;
+      EXPECT_FALSE(may_include(below, tool)) << below << " " << tool;
+    }
+    EXPECT_FALSE(may_include(tool, "kiosk/tools/view")) << tool;
+  }
+  for (const char* no_panel_matter : {"kiosk/toolkit", "kiosk/link", "kiosk/render", "ipc/model"})
+    EXPECT_FALSE(may_include("kiosk/panels", no_panel_matter)) << no_panel_matter;
+  for (const char* no_link_matter : {"kiosk/toolkit", "kiosk/panels", "kiosk/input", "kiosk/render"})
+    EXPECT_FALSE(may_include("kiosk/link", no_link_matter)) << no_link_matter;
+}
+
 TEST(IncludeRules, the_simulated_viewer_shares_nothing_with_what_it_judges) {
   for (const char* judged : {"kiosk", "kiosk/render", "drivers/display", "ipc", "mesh/model", "tests"})
     EXPECT_FALSE(may_include("tests/viewer", judged)) << judged;

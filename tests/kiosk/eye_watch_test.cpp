@@ -22,7 +22,7 @@ constexpr std::int64_t kEyeWatchMs = 1'000'000, kPeriodMs = 20, kPanelMs = 10;
 /// A viewer before a prism mask: the tracker sees the eyes and the mask follows them as long as the test says so.
 class EyeWatchTest : public ListeningDaemonTest {
  protected:
-  EyeWatchTest() : watch_({}, *link_, clock_, tools::Trace(nullptr)) {
+  EyeWatchTest() : watch_({}, *link_, clock_, notices::Trace(nullptr)) {
     clock_.advance_ns(10'000 * kEyeWatchMs);
     watch_.set_timing({kPeriodMs * kEyeWatchMs, kPanelMs * kEyeWatchMs});
     publish();
@@ -94,7 +94,7 @@ TEST_F(EyeWatchTest, a_display_that_refuses_depth_is_given_none_however_well_the
   }
   EXPECT_THAT(told(), ElementsAre("shows mono"));
   ASSERT_TRUE(watch_.facts());
-  EXPECT_EQ(watch_.facts()->condition, tools::EyesFacts::Condition::trouble);
+  EXPECT_EQ(watch_.facts()->condition, toolkit::EyesFacts::Condition::trouble);
   EXPECT_EQ(watch_.facts()->advice, "The screen isn't at its native resolution.");
   EXPECT_FALSE(watch_.facts()->in_depth);
 }
@@ -264,7 +264,7 @@ TEST_F(EyeWatchTest, nothing_is_said_of_a_mask_that_does_not_move) {
   refresh_until(1);
   refresh();
   EXPECT_EQ(watch_.facts()->mask, "");
-  EXPECT_EQ(watch_.facts()->condition, tools::EyesFacts::Condition::good);
+  EXPECT_EQ(watch_.facts()->condition, toolkit::EyesFacts::Condition::good);
 }
 
 TEST_F(EyeWatchTest, a_mask_that_moves_is_watched_even_for_fixed_eyes) {
@@ -289,13 +289,13 @@ TEST_F(EyeWatchTest, without_the_daemon_the_picture_loses_its_depth) {
 
 TEST_F(EyeWatchTest, the_panel_says_why_there_is_no_depth) {
   refresh_until(1);
-  EXPECT_EQ(watch_.facts()->condition, tools::EyesFacts::Condition::good);
+  EXPECT_EQ(watch_.facts()->condition, toolkit::EyesFacts::Condition::good);
   EXPECT_EQ(watch_.facts()->mask, "following");
   EXPECT_TRUE(watch_.facts()->in_depth);
   mask_phase_ = MaskPhase::stuck;
   refresh_until(0);
   refresh();
-  EXPECT_EQ(watch_.facts()->condition, tools::EyesFacts::Condition::trouble);
+  EXPECT_EQ(watch_.facts()->condition, toolkit::EyesFacts::Condition::trouble);
   EXPECT_EQ(watch_.facts()->eyes, "following you");
   EXPECT_EQ(watch_.facts()->mask, "stuck");
   EXPECT_NE(watch_.facts()->advice, "");

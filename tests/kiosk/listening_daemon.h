@@ -102,7 +102,7 @@ class ListeningDaemonTest : public testing::Test {
     std::string name = (std::filesystem::temp_directory_path() / "prismesh-link-XXXXXX").string();
     folder_ = ::mkdtemp(name.data());
     start_daemon();
-    link_ = std::make_unique<DeviceLink>(socket(), tools::Trace(nullptr));
+    link_ = std::make_unique<DeviceLink>(socket(), notices::Trace(nullptr));
   }
   ~ListeningDaemonTest() override {
     link_.reset();

@@ -12,6 +12,8 @@
 namespace prismesh::kiosk::tools::comparison {
 namespace {
 
+using panels::PanelLayout;
+
 class LeftPanels : public panels::GuiTest {
  protected:
   /// Shows the requested comparison, as the kiosk does.

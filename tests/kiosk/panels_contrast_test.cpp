@@ -70,7 +70,7 @@ TEST_F(ContrastOfPanels, every_word_of_the_parts_can_be_read) {
   PartFacts facts;
   facts.parts = {{1, "RAIL", 1200, 0xff4080c0, false, false}, {2, "SILL", 800, 0xff40c080, true, true}};
   facts.files = {{"car.k", 1200, 1, false, false}, {"trim.k", 800, 1, true, true}};
-  PanelLayout layout{{1000, 640}};
+  panels::PanelLayout layout{{1000, 640}};
   for (int round = 0; round < 3; ++round) {
     gui_->layout(layout.picture, 0.016, [&] {
       ImGui::SetNextWindowPos(ImVec2(0, 0));

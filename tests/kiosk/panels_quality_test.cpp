@@ -12,6 +12,8 @@
 namespace prismesh::kiosk::tools::quality {
 namespace {
 
+using panels::PanelLayout;
+
 using mesh::document::SelectMode;
 
 constexpr display::PixelSize kPanelPicture{900, 700};

@@ -5,11 +5,13 @@
 #include <gtest/gtest.h>
 
 #include "kiosk/render/renderer.h"
-#include "kiosk/tools/view_glide.h"
+#include "kiosk/toolkit/view_glide.h"
 #include "tests/kiosk/test_source.h"
 
 namespace prismesh::kiosk::tools::mesh_operations {
 namespace {
+
+using toolkit::ViewGlide;
 
 using mesh::NodeIndex;
 using mesh::ShellIndex;
@@ -100,10 +102,10 @@ TEST(ViewGlide, brings_the_point_into_the_middle_at_the_scale_wanted_and_ends) {
 }
 
 TEST(ViewGlide, a_scale_at_which_an_element_can_be_seen_stays) {
-  EXPECT_EQ(scale_to_look_at(5, 2, 0.25), 2) << "40 pixels";
-  EXPECT_DOUBLE_EQ(scale_to_look_at(5, 0.1, 0.25), 48 * 0.25 / 5) << "2 pixels are too few";
-  EXPECT_DOUBLE_EQ(scale_to_look_at(5, 100, 0.25), 48 * 0.25 / 5) << "2000 are too many";
-  EXPECT_EQ(scale_to_look_at(0, 3, 0.25), 3);
+  EXPECT_EQ(toolkit::scale_to_look_at(5, 2, 0.25), 2) << "40 pixels";
+  EXPECT_DOUBLE_EQ(toolkit::scale_to_look_at(5, 0.1, 0.25), 48 * 0.25 / 5) << "2 pixels are too few";
+  EXPECT_DOUBLE_EQ(toolkit::scale_to_look_at(5, 100, 0.25), 48 * 0.25 / 5) << "2000 are too many";
+  EXPECT_EQ(toolkit::scale_to_look_at(0, 3, 0.25), 3);
 }
 
 }  // namespace

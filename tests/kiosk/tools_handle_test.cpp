@@ -10,6 +10,9 @@
 namespace prismesh::kiosk::tools::shaping {
 namespace {
 
+using input::Pixel;
+using input::Under;
+
 using ipc::SnapshotArray;
 
 /// A sheet of 9 x 9 nodes in the plane z = 0, ten apart, ids from 101, shells counterclockwise seen from +z.

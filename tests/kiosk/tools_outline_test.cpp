@@ -7,6 +7,8 @@
 namespace prismesh::kiosk::tools::selection {
 namespace {
 
+using input::Pixel;
+
 double area_of(const std::vector<Pixel>& outline) {
   double twice = 0;
   for (std::size_t i = 0; i < outline.size(); ++i) {

@@ -7,19 +7,22 @@
 
 #include <gtest/gtest.h>
 
-#include "kiosk/tools/history_file.h"
-#include "kiosk/tools/key_table.h"
+#include "kiosk/input/key_table.h"
+#include "kiosk/input/typed_numbers.h"
+#include "kiosk/toolkit/history_file.h"
 #include "kiosk/tools/parts/file_expression.h"
 #include "kiosk/tools/shaping/axis_pick.h"
 #include "kiosk/tools/shaping/falloff_direction.h"
 #include "kiosk/tools/shaping/shaping_options.h"
 #include "kiosk/tools/shaping/typed_number.h"
-#include "kiosk/tools/typed_numbers.h"
 #include "mesh/document/edit_kinds.h"
 #include "tests/kiosk/test_source.h"
 
 namespace prismesh::kiosk::tools::shaping {
 namespace {
+
+using input::Under;
+using toolkit::HistoryFile;
 
 using mesh::Vec3;
 namespace document = mesh::document;
@@ -106,10 +109,10 @@ TEST(FalloffDirectionTest, a_picked_direction_reaches_the_edit) {
 }
 
 TEST(TypedNumberTest, numbers_are_read_as_people_write_them) {
-  EXPECT_EQ(*parse_numbers("12.5"), (std::vector<double>{12.5}));
-  EXPECT_EQ(*parse_numbers(" -1, 2;+3e-1 "), (std::vector<double>{-1, 2, 0.3}));
+  EXPECT_EQ(*input::parse_numbers("12.5"), (std::vector<double>{12.5}));
+  EXPECT_EQ(*input::parse_numbers(" -1, 2;+3e-1 "), (std::vector<double>{-1, 2, 0.3}));
   for (const char* text : {"", "  ", "abc", "1 two", "1.2.3", "nan", "inf", "1e999", "--1"})
-    EXPECT_FALSE(parse_numbers(text)) << "\"" << text << "\" was taken";
+    EXPECT_FALSE(input::parse_numbers(text)) << "\"" << text << "\" was taken";
 }
 
 TEST(TypedNumberTest, what_a_tool_makes_of_them) {
@@ -121,8 +124,8 @@ TEST(TypedNumberTest, what_a_tool_makes_of_them) {
   EXPECT_FALSE(typed_displacement(Under::slide_handle, "10", {})) << "nowhere to go";
   EXPECT_FALSE(typed_displacement(Under::slide_handle, "1 2", {}));
   EXPECT_FALSE(typed_displacement(Under::lift_handle, "1 2 3", {}));
-  EXPECT_TRUE(begins_number("-") && begins_number(".") && begins_number("7"));
-  EXPECT_FALSE(begins_number("") || begins_number("e"));
+  EXPECT_TRUE(input::begins_number("-") && input::begins_number(".") && input::begins_number("7"));
+  EXPECT_FALSE(input::begins_number("") || input::begins_number("e"));
 }
 
 TEST(TypedNumberTest, the_hint_says_where_a_number_goes) {
@@ -198,7 +201,7 @@ TEST(AxisPickTest, the_edge_under_the_pointer_is_found_and_named_creases_and_fre
   EXPECT_EQ(free->what, "free edge");
   EXPECT_NEAR(std::abs(free->axis.direction.x()), 1, 1e-12);
   EXPECT_EQ(at(10.3, 5)->what, "element edge") << "with nothing better within reach";
-  EXPECT_FALSE(edge_at(model, aim, mesh::ShellIndex(99), Pixel(0, 0), 30));
+  EXPECT_FALSE(edge_at(model, aim, mesh::ShellIndex(99), input::Pixel(0, 0), 30));
 }
 
 TEST(FileExpressionTest, names_are_quoted_by_what_they_dont_hold) {

@@ -5,6 +5,8 @@
 
 namespace prismesh::kiosk::tools::comparison {
 
+using notices::Notice;
+
 void BeforeAfter::toggle() {
   if (pair_) {
     showing_before_ = !showing_before_;
@@ -25,7 +27,8 @@ bool BeforeAfter::end() {
 }
 
 void BeforeAfter::follow() {
-  if (pair_ && (!link_.snapshot() || link_.document_number() != pair_->document || link_.snapshot()->info().generation != pair_->after))
+  if (pair_ && (!link_.document.snapshot() || link_.document.number() != pair_->document ||
+                link_.document.snapshot()->info().generation != pair_->after))
     end();
   if (pair_ && showing_before_ && !comparing_.shown_problem().empty()) {
     notices_.say(Notice::Kind::warning, "The state before " + edit() + " can't be shown: " + comparing_.shown_problem());
@@ -36,23 +39,26 @@ void BeforeAfter::follow() {
 
 /// The states are asked for when no edit is under way, so that the newest one is what the user means by it.
 void BeforeAfter::ask() {
-  if (asked_on_ == link_.connections()) return;
-  if (!link_.connected() || !link_.snapshot() || !link_.up_to_date() || link_.editing() || link_.drag() != nullptr) return;
-  asked_on_ = link_.connections();
-  link_.question(ipc::GetState{}, [this](const ipc::Answer& answer) {
+  if (asked_on_ == link_.connection.number()) return;
+  if (!link_.connection.connected() || !link_.document.snapshot() || !link_.document.up_to_date() || link_.edits.under_way() ||
+      link_.drag.running() != nullptr)
+    return;
+  asked_on_ = link_.connection.number();
+  link_.connection.question(ipc::GetState{}, [this](const ipc::Answer& answer) {
     asked_on_.reset();
     if (const auto* state = std::get_if<ipc::DocumentState>(&answer); state != nullptr && wanted_) begin(*state);
   });
 }
 
 void BeforeAfter::begin(const ipc::DocumentState& state) {
-  if (!link_.snapshot() || state.generation != link_.snapshot()->info().generation) return;  // a newer one is on its way: asked again then
+  if (!link_.document.snapshot() || state.generation != link_.document.snapshot()->info().generation)
+    return;  // a newer one is on its way: asked again then
   wanted_ = false;
   const auto newest = std::find_if(state.generations.begin(), state.generations.end(),
                                    [&](const ipc::ListedGeneration& each) { return each.number == state.generation; });
   if (newest == state.generations.begin() || newest == state.generations.end())
     return notices_.say(Notice::Kind::information, "There is no state before this one to compare with.");
-  pair_ = Pair{link_.document_number(), newest->made_by, std::prev(newest)->number, newest->number};
+  pair_ = Pair{link_.document.number(), newest->made_by, std::prev(newest)->number, newest->number};
   showing_before_ = true;
   show();
 }

@@ -5,15 +5,15 @@
 #include <optional>
 #include <string>
 
+#include "kiosk/link/model_link.h"
+#include "kiosk/notices/notices.h"
 #include "kiosk/tools/comparison/comparing.h"
-#include "kiosk/tools/model_link.h"
-#include "kiosk/tools/notices.h"
 
 namespace prismesh::kiosk::tools::comparison {
 
 class BeforeAfter {
  public:
-  BeforeAfter(ModelLink& link, Comparing& comparing, Notices& notices, Trace trace)
+  BeforeAfter(link::ModelLink& link, Comparing& comparing, notices::Notices& notices, notices::Trace trace)
       : link_(link), comparing_(comparing), notices_(notices), trace_(trace) {}
 
   /// Shows the other one of the two states, at first the one before the last edit. Waits for edits under way.
@@ -34,7 +34,7 @@ class BeforeAfter {
 
  private:
   struct Pair {
-    std::uint64_t document = 0;  ///< ModelLink::document_number
+    std::uint64_t document = 0;  ///< FollowedDocument::number
     std::string edit;
     std::uint64_t before = 0, after = 0;  ///< generations
   };
@@ -42,10 +42,10 @@ class BeforeAfter {
   void begin(const ipc::DocumentState& state);
   void show();
 
-  ModelLink& link_;
+  link::ModelLink& link_;
   Comparing& comparing_;
-  Notices& notices_;
-  Trace trace_;
+  notices::Notices& notices_;
+  notices::Trace trace_;
   bool wanted_ = false;                    ///< and not begun: the states aren't known yet
   std::optional<std::uint64_t> asked_on_;  ///< the connection on which the states were asked for and haven't come
   std::optional<Pair> pair_;

@@ -124,7 +124,7 @@ void choose_field(const CompareFacts& facts, CompareEntry& entry, CompareWish& w
 
 }  // namespace
 
-std::optional<CompareWish> compare_panel(const CompareFacts& facts, CompareEntry& entry, PanelLayout& layout) {
+std::optional<CompareWish> compare_panel(const CompareFacts& facts, CompareEntry& entry, panels::PanelLayout& layout) {
   CompareWish wanted = facts.wish;
   panels::begin_left("Comparing", layout.picture);
   panels::panel_title("Comparing", "Shift+C closes; colours and views stay");

@@ -3,13 +3,13 @@
 
 #include <optional>
 
+#include "kiosk/panels/panel_layout.h"
 #include "kiosk/tools/comparison/legend_facts.h"
-#include "kiosk/tools/panel_layout.h"
 
 namespace prismesh::kiosk::tools::comparison {
 
 /// Lays the panel out (inside Gui::layout). Returns another wish, if the user chose one.
-std::optional<CompareWish> compare_panel(const CompareFacts& facts, CompareEntry& entry, PanelLayout& layout);
+std::optional<CompareWish> compare_panel(const CompareFacts& facts, CompareEntry& entry, panels::PanelLayout& layout);
 
 /// Says which state is seen where: a line for each at the top of the picture.
 void view_captions(const CompareFacts& facts, display::PixelSize picture, float top);

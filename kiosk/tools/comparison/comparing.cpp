@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "ipc/wire/failure.h"
+#include "kiosk/link/notice_words.h"
 
 namespace prismesh::kiosk::tools::comparison {
 
@@ -49,13 +50,13 @@ void Comparing::set_limits(const SetLimits& limits) {
 
 Result<void> Comparing::follow() {
   if (failed_) return fail(*std::exchange(failed_, std::nullopt));
-  if (connection_ != link_.connections()) {
+  if (connection_ != link_.connection.number()) {
     // Another server knows nothing of what was asked.
-    connection_ = link_.connections();
+    connection_ = link_.connection.number();
     for (View* view : {&main_, &other_}) view->asked_view.reset(), view->asked.reset();
     states_of_.reset();
   }
-  if (const std::uint64_t document = link_.snapshot() ? link_.document_number() : 0; document != document_) {
+  if (const std::uint64_t document = link_.document.snapshot() ? link_.document.number() : 0; document != document_) {
     document_ = document;
     show_current();
     wish_.beside.reset();
@@ -67,11 +68,11 @@ Result<void> Comparing::follow() {
     }
     states_of_.reset();
   }
-  if (!link_.snapshot()) return {};
+  if (!link_.document.snapshot()) return {};
   follow_states();
   follow_view(Pane::model, shown());
   follow_view(Pane::other, wish_.two_views ? wish_.beside : std::nullopt);
-  const auto beside = !wish_.two_views ? nullptr : other_.view ? other_.view : link_.snapshot();
+  const auto beside = !wish_.two_views ? nullptr : other_.view ? other_.view : link_.document.snapshot();
   const bool other_hidden = follow_hidden();
   if (beside != beside_ || (beside && other_hidden)) {
     beside_ = beside;
@@ -87,15 +88,15 @@ Result<void> Comparing::follow() {
 
 bool Comparing::follow_hidden() {
   std::vector<std::uint8_t> hidden;
-  for (const ipc::SnapshotPart& part : link_.snapshot()->info().parts) hidden.push_back(part.hidden ? 1 : 0);
+  for (const ipc::SnapshotPart& part : link_.document.snapshot()->info().parts) hidden.push_back(part.hidden ? 1 : 0);
   return std::exchange(hidden_, hidden) != hidden_;
 }
 
 void Comparing::follow_states() {
-  const std::uint64_t current = link_.snapshot()->info().generation;
+  const std::uint64_t current = link_.document.snapshot()->info().generation;
   if (states_of_ == current || (!panel_open_ && !wish_.two_views)) return;
   states_of_ = current;
-  link_.question(ipc::GetState{}, [this](const ipc::Answer& answer) {
+  link_.connection.question(ipc::GetState{}, [this](const ipc::Answer& answer) {
     const auto* state = std::get_if<ipc::DocumentState>(&answer);
     if (state == nullptr) return;
     states_ = state->generations;
@@ -109,7 +110,7 @@ void Comparing::follow_states() {
 
 void Comparing::follow_view(Pane pane, const std::optional<std::uint64_t>& generation) {
   View& view = of(pane);
-  const bool current = !generation || *generation == link_.snapshot()->info().generation;
+  const bool current = !generation || *generation == link_.document.snapshot()->info().generation;
   if (current) {
     view.view.reset();
     view.asked_view.reset();
@@ -121,8 +122,8 @@ void Comparing::follow_view(Pane pane, const std::optional<std::uint64_t>& gener
   view.view_problem.clear();
   ipc::GetSnapshot request;
   request.generation = generation;
-  request.have_segments = link_.segments();
-  link_.question(request, [this, pane, generation](const ipc::Answer& answer) {
+  request.have_segments = link_.connection.segments();
+  link_.connection.question(request, [this, pane, generation](const ipc::Answer& answer) {
     View& asked = of(pane);
     if (const auto* failed = std::get_if<ipc::Failed>(&answer)) {
       asked.view_problem = failed->message;
@@ -130,7 +131,7 @@ void Comparing::follow_view(Pane pane, const std::optional<std::uint64_t>& gener
     }
     const auto* snapshot = std::get_if<ipc::Snapshot>(&answer);
     if (snapshot == nullptr) return;
-    Result<std::shared_ptr<const ipc::SnapshotView>> taken = link_.take(*snapshot);
+    Result<std::shared_ptr<const ipc::SnapshotView>> taken = link_.connection.take(*snapshot);
     if (!taken) {
       asked.view_problem = taken.error().text();
       return;
@@ -161,7 +162,7 @@ void Comparing::follow_field(Pane pane, const std::optional<std::uint64_t>& gene
   if (!field_wanted()) return forget_field(pane);
   ipc::GetField request;
   request.field = wish_.field;
-  request.generation = generation.value_or(link_.snapshot()->info().generation);
+  request.generation = generation.value_or(link_.document.snapshot()->info().generation);
   std::error_code ignored;
   request.against = is_state(wish_.against) ? wish_.against : std::filesystem::absolute(wish_.against, ignored).string();
   request.against_generation = wish_.against_generation;
@@ -170,7 +171,7 @@ void Comparing::follow_field(Pane pane, const std::optional<std::uint64_t>& gene
   View& view = of(pane);
   if (view.asked && same(*view.asked, request)) return;
   view.asked = request;
-  link_.question(request, [this, pane, request](const ipc::Answer& answer) { took_field(pane, request, answer); });
+  link_.connection.question(request, [this, pane, request](const ipc::Answer& answer) { took_field(pane, request, answer); });
 }
 
 void Comparing::took_field(Pane pane, const ipc::GetField& asked, const ipc::Answer& answer) {
@@ -180,12 +181,12 @@ void Comparing::took_field(Pane pane, const ipc::GetField& asked, const ipc::Ans
   const auto* made = std::get_if<ipc::FieldMade>(&answer);
   if (made == nullptr) {
     if (const auto* failed = std::get_if<ipc::Failed>(&answer))
-      view.field_problem = was_stopped(*failed) ? "stopped; choose it again to see it" : ipc::error_from(*failed).text();
+      view.field_problem = link::was_stopped(*failed) ? "stopped; choose it again to see it" : ipc::error_from(*failed).text();
     view.made.reset();
     if (Result<void> cleared = renderer_.set_field(pane, {}, true); !cleared) failed_ = cleared.error();
     return;
   }
-  const Result<std::shared_ptr<const ipc::FieldValues>> values = link_.take(*made);
+  const Result<std::shared_ptr<const ipc::FieldValues>> values = link_.connection.take(*made);
   if (!values) {
     view.field_problem = values.error().text();
     return;
@@ -215,7 +216,7 @@ void Comparing::dress(render::Picture& picture, double shift) const {
 }
 
 std::string Comparing::words_of(const std::optional<std::uint64_t>& generation) const {
-  if (!generation || !link_.snapshot() || *generation == link_.snapshot()->info().generation) return "now";
+  if (!generation || !link_.document.snapshot() || *generation == link_.document.snapshot()->info().generation) return "now";
   for (const ipc::ListedGeneration& state : states_)
     if (state.number == *generation) return words_of_state(state);
   return fmt::format("state {}", *generation);
@@ -236,7 +237,7 @@ CompareFacts Comparing::facts(double shift) const {
       if (!problem.empty()) facts.problem = problem;
   for (const ipc::ListedGeneration& state : states_) facts.states.push_back({state.number, words_of_state(state)});
   facts.captions = captions(shift);
-  if (link_.snapshot()) facts.current = link_.snapshot()->info().generation;
+  if (link_.document.snapshot()) facts.current = link_.document.snapshot()->info().generation;
   for (const Pane pane : {Pane::model, Pane::other}) {
     const View& view = of(pane);
     if (!view.made || (pane == Pane::other && !two_views())) continue;

@@ -6,16 +6,16 @@
 #include <string>
 #include <vector>
 
+#include "kiosk/link/model_link.h"
 #include "kiosk/render/renderer.h"
 #include "kiosk/tools/comparison/compare_wish.h"
 #include "kiosk/tools/comparison/legend_facts.h"
-#include "kiosk/tools/model_link.h"
 
 namespace prismesh::kiosk::tools::comparison {
 
 class Comparing {
  public:
-  Comparing(ModelLink& link, render::Renderer& renderer, Trace trace) : link_(link), renderer_(renderer), trace_(trace) {}
+  Comparing(link::ModelLink& link, render::Renderer& renderer, notices::Trace trace) : link_(link), renderer_(renderer), trace_(trace) {}
 
   const CompareWish& wish() const { return wish_; }
   void set(const CompareWish& wish);
@@ -41,7 +41,7 @@ class Comparing {
   /// GPU.
   Result<void> follow();
   /// The state for the renderer's model: an older one, or else the current one.
-  std::shared_ptr<const ipc::SnapshotView> model() const { return main_.view ? main_.view : link_.snapshot(); }
+  std::shared_ptr<const ipc::SnapshotView> model() const { return main_.view ? main_.view : link_.document.snapshot(); }
   /// By part, 1: hidden in the current state, and so in all that are shown.
   const std::vector<std::uint8_t>& hidden() const { return hidden_; }
   /// `shift`: as in render::TwoViews.
@@ -73,9 +73,9 @@ class Comparing {
   std::string words_of(const std::optional<std::uint64_t>& generation) const;
   std::vector<CompareFacts::Caption> captions(double shift) const;
 
-  ModelLink& link_;
+  link::ModelLink& link_;
   render::Renderer& renderer_;
-  Trace trace_;
+  notices::Trace trace_;
   CompareWish wish_;
   std::optional<std::uint64_t> glance_;
   bool panel_open_ = false;
@@ -87,7 +87,7 @@ class Comparing {
   std::vector<ipc::ListedGeneration> states_;
   std::optional<std::uint64_t> states_of_;  ///< the current generation when they were asked for
   std::uint64_t connection_ = 0;
-  std::uint64_t document_ = 0;   ///< ModelLink::document_number; 0: none
+  std::uint64_t document_ = 0;   ///< FollowedDocument::number; 0: none
   std::optional<Error> failed_;  ///< of the renderer, in an answer
 };
 

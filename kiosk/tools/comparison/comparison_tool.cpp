@@ -4,15 +4,19 @@
 #include <array>
 
 #include "kiosk/panels/gui.h"
+#include "kiosk/toolkit/edits.h"
+#include "kiosk/toolkit/open_panels.h"
+#include "kiosk/toolkit/picking.h"
+#include "kiosk/toolkit/tool_set.h"
 #include "kiosk/tools/comparison/compare_panel.h"
 #include "kiosk/tools/comparison/legend.h"
-#include "kiosk/tools/edits.h"
-#include "kiosk/tools/open_panels.h"
-#include "kiosk/tools/picking.h"
-#include "kiosk/tools/tool_set.h"
 
 namespace prismesh::kiosk::tools::comparison {
 namespace {
+
+using input::KeyBinding;
+using input::Menu;
+using panels::PanelLayout;
 
 using display::letter;
 
@@ -20,7 +24,7 @@ constexpr std::string_view kName = "comparison";
 
 enum class ComparisonCommand : std::uint8_t { before_and_after, panel, two_views };
 
-constexpr Command command_of(ComparisonCommand command) { return {kName, static_cast<std::uint8_t>(command)}; }
+constexpr input::Command command_of(ComparisonCommand command) { return {kName, static_cast<std::uint8_t>(command)}; }
 
 constexpr std::array kKeys = {
     KeyBinding{letter('C'), false, false, command_of(ComparisonCommand::before_and_after), Menu::edit, "C",
@@ -32,8 +36,8 @@ constexpr std::array kKeys = {
 };
 
 /// The preview of a pull is in the picture.
-bool shows_pull(const ModelLink& link) {
-  const RemoteDrag* drag = link.drag();
+bool shows_pull(const link::ModelLink& link) {
+  const link::RunningDrag* drag = link.drag.running();
   return drag != nullptr && drag->begun() && drag->frame().sequence > 0;
 }
 
@@ -43,10 +47,10 @@ std::span<const KeyBinding> keys() { return kKeys; }
 
 std::string_view ComparisonTool::name() const { return kName; }
 
-void ComparisonTool::command(std::uint8_t number, const Pointer&) {
+void ComparisonTool::command(std::uint8_t number, const toolkit::Pointer&) {
   switch (static_cast<ComparisonCommand>(number)) {
     case ComparisonCommand::before_and_after: before_and_after(); break;
-    case ComparisonCommand::panel: toggle_left(context_, this); break;
+    case ComparisonCommand::panel: toolkit::toggle_left(context_, this); break;
     case ComparisonCommand::two_views: turn_two_views(); break;
   }
 }
@@ -63,7 +67,7 @@ void ComparisonTool::turn_two_views() {
   CompareWish wish = comparing_.wish();
   wish.two_views = !wish.two_views;
   // Before and after: the deck as opened stands beside the current state.
-  if (const auto& state = context_.link.state(); wish.two_views && !wish.beside && state && !state->generations.empty())
+  if (const auto& state = context_.link.document.state(); wish.two_views && !wish.beside && state && !state->generations.empty())
     wish.beside = state->generations.front().number;
   set(wish);
 }
@@ -74,7 +78,7 @@ void ComparisonTool::set(const CompareWish& wish) {
   const bool two = comparing_.two_views();
   comparing_.set(wish);
   context_.view.two_views = comparing_.two_views();
-  if (two && !comparing_.two_views()) resize_view(1 / kTwoViewsSize);
+  if (two && !comparing_.two_views()) resize_view(1 / toolkit::kTwoViewsSize);
   context_.follow_soon = true;
 }
 
@@ -101,7 +105,7 @@ bool ComparisonTool::allow_edit() {
   context_.tools.cancel_gesture();
   ++context_.changes;
   context_.follow_soon = true;
-  context_.notices.say(Notice::Kind::information,
+  context_.notices.say(notices::Notice::Kind::information,
                        "You were looking at " + which + ". This is the newest state; nothing was edited. Ask again to edit it.");
   return false;
 }
@@ -116,7 +120,7 @@ Result<void> ComparisonTool::prepare() {
   context_.view.two_views = comparing_.two_views();
   if (Result<void> set = set_model(); !set) return set;
   before_after_.tell();
-  if (two != comparing_.two_views() && context_.shown.snapshot) resize_view(two ? 1 / kTwoViewsSize : kTwoViewsSize);
+  if (two != comparing_.two_views() && context_.shown.snapshot) resize_view(two ? 1 / toolkit::kTwoViewsSize : toolkit::kTwoViewsSize);
   return {};
 }
 
@@ -129,7 +133,7 @@ Result<void> ComparisonTool::set_model() {
   drawn_ = wanted;
   drawn_hidden_ = comparing_.hidden();
   const auto& shown = context_.shown.snapshot;
-  if (shown && context_.link.snapshot() == shown) take_model(context_);
+  if (shown && context_.link.document.snapshot() == shown) toolkit::take_model(context_);
   return {};
 }
 
@@ -142,15 +146,15 @@ void ComparisonTool::resize_view(double by) {
 
 // --- picture and panels ---
 
-void ComparisonTool::add_to_picture(render::Picture& picture) const { comparing_.dress(picture, pane_shift(context_.view)); }
+void ComparisonTool::add_to_picture(render::Picture& picture) const { comparing_.dress(picture, toolkit::pane_shift(context_.view)); }
 
 void ComparisonTool::draw_left(PanelLayout& layout) {
-  if (const std::optional<CompareWish> wanted = compare_panel(comparing_.facts(pane_shift(context_.view)), entry_, layout))
+  if (const std::optional<CompareWish> wanted = compare_panel(comparing_.facts(toolkit::pane_shift(context_.view)), entry_, layout))
     layout.ask([this, wish = *wanted] { set(wish); });
 }
 
 void ComparisonTool::draw_over_picture(PanelLayout& layout) {
-  CompareFacts facts = comparing_.facts(pane_shift(context_.view));
+  CompareFacts facts = comparing_.facts(toolkit::pane_shift(context_.view));
   for (LegendFacts& each : facts.legends) {
     // Of the right one of two views: in the other nothing is pulled.
     each.before_pull = shows_pull(context_.link) && each.pane == static_cast<std::size_t>(render::Pane::model);

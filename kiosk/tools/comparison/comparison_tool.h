@@ -8,24 +8,30 @@
 #include <string>
 #include <vector>
 
+#include "kiosk/toolkit/abilities.h"
+#include "kiosk/toolkit/tool.h"
+#include "kiosk/toolkit/tool_context.h"
 #include "kiosk/tools/comparison/before_after.h"
 #include "kiosk/tools/comparison/comparing.h"
-#include "kiosk/tools/tool.h"
-#include "kiosk/tools/tool_context.h"
 
 namespace prismesh::kiosk::tools::comparison {
 
-std::span<const KeyBinding> keys();
+std::span<const input::KeyBinding> keys();
 
-class ComparisonTool final : public Tool {
+class ComparisonTool final : public toolkit::Tool,
+                             public toolkit::TakesBack,
+                             public toolkit::GuardsEdits,
+                             public toolkit::ColoursModel,
+                             public toolkit::HidesGlyphs,
+                             public toolkit::DrawsOverPicture {
  public:
-  explicit ComparisonTool(ToolContext& context)
+  explicit ComparisonTool(toolkit::ToolContext& context)
       : context_(context),
         comparing_(context.link, context.renderer, context.trace),
         before_after_(context.link, comparing_, context.notices, context.trace) {}
 
   std::string_view name() const override;
-  void command(std::uint8_t number, const Pointer& pointer) override;
+  void command(std::uint8_t number, const toolkit::Pointer& pointer) override;
   bool take_back() override;
   Result<void> prepare() override;
   bool allow_edit() override;
@@ -36,9 +42,9 @@ class ComparisonTool final : public Tool {
   std::string glyphs_hidden() const override { return comparing_.coloured() ? "no glyphs while values are shown" : ""; }
   std::string guidance() const override { return before_after_.words(); }
   std::string_view panel_name() const override { return "comparing"; }
-  void draw_left(PanelLayout& layout) override;
+  void draw_left(panels::PanelLayout& layout) override;
   void panel_changed() override { comparing_.open_panel(context_.open.left == this); }
-  void draw_over_picture(PanelLayout& layout) override;
+  void draw_over_picture(panels::PanelLayout& layout) override;
 
  private:
   void before_and_after();
@@ -47,7 +53,7 @@ class ComparisonTool final : public Tool {
   Result<void> set_model();
   void resize_view(double by);
 
-  ToolContext& context_;
+  toolkit::ToolContext& context_;
   Comparing comparing_;
   BeforeAfter before_after_;
   CompareEntry entry_;

@@ -8,6 +8,10 @@
 namespace prismesh::kiosk::tools::files {
 namespace {
 
+using link::Unsaved;
+using panels::Question;
+using panels::Reply;
+
 std::string file_name(const std::filesystem::path& path) { return path.filename().string(); }
 
 Question::Choice choice(Reply reply, std::string label, char key) {
@@ -39,8 +43,8 @@ std::string doing(const ipc::SaveWould& would) {
 
 /// As far as the server has said; empty: none.
 std::string DeckFiles::open_deck() const {
-  if (const auto& snapshot = link_.snapshot()) return snapshot->info().document;
-  return link_.state() ? link_.state()->path : std::string();
+  if (const auto& snapshot = link_.document.snapshot()) return snapshot->info().document;
+  return link_.document.state() ? link_.document.state()->path : std::string();
 }
 
 void DeckFiles::save(const std::string& remark) { write({}, remark); }
@@ -56,7 +60,7 @@ void DeckFiles::save_elsewhere(const std::filesystem::path& path, Elsewhere how,
 }
 
 void DeckFiles::write(const ipc::Save& request, const std::string& remark) {
-  link_.save(request, remark, [this, request, remark](const ipc::Answer& answer) {
+  link_.deck.save(request, remark, [this, request, remark](const ipc::Answer& answer) {
     if (const auto* would = std::get_if<ipc::SaveWould>(&answer)) ask_about_writing(request, remark, *would);
   });
 }
@@ -91,10 +95,10 @@ void DeckFiles::ask_about_edits(const std::filesystem::path& deck) {
 }
 
 bool DeckFiles::has_unsaved_edits() const {
-  if (!link_.connected()) return false;  // nothing can be done about them from here; they are in the journal
-  if (link_.editing()) return true;
-  if (const auto& snapshot = link_.snapshot()) return snapshot->info().changed || !link_.up_to_date();
-  return link_.state() && link_.state()->open && link_.state()->changed;
+  if (!link_.connection.connected()) return false;  // nothing can be done about them from here; they are in the journal
+  if (link_.edits.under_way()) return true;
+  if (const auto& snapshot = link_.document.snapshot()) return snapshot->info().changed || !link_.document.up_to_date();
+  return link_.document.state() && link_.document.state()->open && link_.document.state()->changed;
 }
 
 void DeckFiles::quit() {
@@ -123,8 +127,9 @@ void DeckFiles::reply_about_quitting(Reply reply) {
   const auto quit_if = [this](bool done) { quits_ = quits_ || done; };
   if (reply == Reply::keep) quits_ = true;
   if (reply == Reply::save)
-    link_.save(ipc::Save{}, {}, [quit_if](const ipc::Answer& answer) { quit_if(std::holds_alternative<ipc::Saved>(answer)); });
-  if (reply == Reply::discard) link_.close([quit_if](const ipc::Answer& answer) { quit_if(std::holds_alternative<ipc::Done>(answer)); });
+    link_.deck.save(ipc::Save{}, {}, [quit_if](const ipc::Answer& answer) { quit_if(std::holds_alternative<ipc::Saved>(answer)); });
+  if (reply == Reply::discard)
+    link_.deck.close([quit_if](const ipc::Answer& answer) { quit_if(std::holds_alternative<ipc::Done>(answer)); });
 }
 
 void DeckFiles::reply(Reply reply) {
@@ -135,11 +140,11 @@ void DeckFiles::reply(Reply reply) {
   switch (reply) {
     case Reply::cancel: return;
     case Reply::write: return write(std::exchange(to_write_, {}), remark_);
-    case Reply::keep: return link_.open(to_open_, ModelLink::Unsaved::keep);
-    case Reply::discard: return link_.open(to_open_, ModelLink::Unsaved::discard);
+    case Reply::keep: return link_.deck.open(to_open_, Unsaved::keep);
+    case Reply::discard: return link_.deck.open(to_open_, Unsaved::discard);
     case Reply::save:
-      link_.save(ipc::Save{}, {}, [this, deck = to_open_](const ipc::Answer& answer) {
-        if (std::holds_alternative<ipc::Saved>(answer)) link_.open(deck);
+      link_.deck.save(ipc::Save{}, {}, [this, deck = to_open_](const ipc::Answer& answer) {
+        if (std::holds_alternative<ipc::Saved>(answer)) link_.deck.open(deck);
       });
   }
 }
@@ -147,11 +152,11 @@ void DeckFiles::reply(Reply reply) {
 void DeckFiles::follow() {
   if (question_ && about_ != open_deck()) reply(Reply::cancel);
   // Another client may have saved the edits meanwhile.
-  if (question_ && quitting_ && link_.connected() && !has_unsaved_edits()) {
+  if (question_ && quitting_ && link_.connection.connected() && !has_unsaved_edits()) {
     reply(Reply::cancel);
     quits_ = true;
   }
-  if (const std::optional<std::filesystem::path> refused = link_.take_refused()) ask_about_edits(*refused);
+  if (const std::optional<std::filesystem::path> refused = link_.deck.take_refused()) ask_about_edits(*refused);
 }
 
 }  // namespace prismesh::kiosk::tools::files

@@ -2,10 +2,14 @@
 
 #include <array>
 
-#include "kiosk/tools/open_panels.h"
+#include "kiosk/toolkit/open_panels.h"
 
 namespace prismesh::kiosk::tools::files {
 namespace {
+
+using input::Command;
+using input::KeyBinding;
+using input::Menu;
 
 using display::letter;
 
@@ -33,8 +37,8 @@ Command quit_command() { return command_of(FilesCommand::quit); }
 
 std::string_view FilesTool::name() const { return kName; }
 
-void FilesTool::command(std::uint8_t number, const Pointer&) {
-  const auto dialog = [&](PathDialog kind) { open_dialog(context_, this, static_cast<int>(kind)); };
+void FilesTool::command(std::uint8_t number, const toolkit::Pointer&) {
+  const auto dialog = [&](PathDialog kind) { toolkit::open_dialog(context_, this, static_cast<int>(kind)); };
   switch (static_cast<FilesCommand>(number)) {
     case FilesCommand::open: dialog(PathDialog::open); break;
     case FilesCommand::save: deck_files_.save(save_remark()); break;
@@ -54,11 +58,11 @@ void FilesTool::command(std::uint8_t number, const Pointer&) {
 Result<void> FilesTool::prepare() {
   deck_files_.follow();
   context_.quits = deck_files_.quits();
-  if (question() != nullptr) set_cover(context_, Cover::none);
+  if (question() != nullptr) toolkit::set_cover(context_, toolkit::Cover::none);
   return {};
 }
 
-void FilesTool::reply(Reply reply) {
+void FilesTool::reply(panels::Reply reply) {
   deck_files_.reply(reply);
   context_.quits = deck_files_.quits();
 }
@@ -67,13 +71,13 @@ std::string FilesTool::save_remark() const {
   return context_.shown.older ? "It is the newest state that was saved, not the older one that is shown." : "";
 }
 
-void FilesTool::draw_dialog(int kind, bool opened, PanelLayout& layout) {
+void FilesTool::draw_dialog(int kind, bool opened, panels::PanelLayout& layout) {
   const auto dialog = static_cast<PathDialog>(kind);
   const std::string deck = context_.shown.snapshot ? context_.shown.snapshot->info().document : std::string();
   const std::optional<std::string> entered = path_box({dialog, opened, deck}, layout.picture, entry_);
   if (!entered) return;
   layout.ask([this, dialog, path = *entered] { enter(dialog, path); });
-  layout.ask([this] { close_dialog(context_); });
+  layout.ask([this] { toolkit::close_dialog(context_); });
 }
 
 void FilesTool::enter(PathDialog dialog, const std::string& path) {

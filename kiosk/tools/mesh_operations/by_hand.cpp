@@ -1,10 +1,12 @@
 #include "kiosk/tools/mesh_operations/by_hand.h"
 
-#include "kiosk/tools/seen_shell.h"
+#include "kiosk/toolkit/seen_shell.h"
 
 namespace prismesh::kiosk::tools::mesh_operations {
 
 namespace {
+
+using input::Pixel;
 
 using ipc::SnapshotArray;
 using mesh::NodeIndex;
@@ -34,7 +36,8 @@ std::optional<SeenEdge> nearest_edge(const ModelSource& model, const stereo::Aim
   for (std::size_t k = 0; k < corners; ++k) {
     const std::size_t next = (k + 1) % corners;
     if (shell.node[k] == shell.node[next]) continue;
-    const double pixels = pixels_from_line(seen[k], seen[next], pixel), deep = pixels_from_line(seen[k], seen[next], middle);
+    const double pixels = toolkit::pixels_from_line(seen[k], seen[next], pixel),
+                 deep = toolkit::pixels_from_line(seen[k], seen[next], middle);
     if (nearest && pixels >= least) continue;
     least = pixels;
     nearest = SeenEdge{shell.node[k], shell.node[next], deep > 0 ? pixels / deep : 0};
@@ -69,7 +72,7 @@ std::optional<HandTarget> hand_target(const ModelSource& model, const stereo::Ai
                                       const Pixel& pixel) {
   if (shell.value >= model.size(SnapshotArray::shell_nodes)) return std::nullopt;
   const auto nodes = model.at<ShellNodes>(SnapshotArray::shell_nodes, shell.value);
-  if (!is_whole(model, nodes)) return std::nullopt;
+  if (!toolkit::is_whole(model, nodes)) return std::nullopt;
   const std::optional<SeenEdge> edge = nearest_edge(model, aim, nodes, pixel);
   if (!edge) return std::nullopt;
   if (operation == Operation::collapse) return HandTarget{{}, {edge->a, edge->b}};

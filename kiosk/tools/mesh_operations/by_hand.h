@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "kiosk/input/gestures.h"
 #include "kiosk/render/model_source.h"
 #include "kiosk/stereo/pointer.h"
-#include "kiosk/tools/gestures.h"
 #include "mesh/document/edit.h"
 #include "mesh/repair/operation.h"
 
@@ -24,6 +24,6 @@ struct HandTarget {
 /// For a split: the shell, or the two shells at the edge that the pointer is within a fifth of; for a collapse: the ends of the nearest
 /// edge; for a merge and a swap: the shells at it. Nothing where the shell isn't on the picture. Costs a pass over the shells.
 std::optional<HandTarget> hand_target(const render::ModelSource& model, const stereo::Aim& aim, mesh::repair::Operation operation,
-                                      mesh::ShellIndex shell, const Pixel& pixel);
+                                      mesh::ShellIndex shell, const input::Pixel& pixel);
 
 }  // namespace prismesh::kiosk::tools::mesh_operations

@@ -4,7 +4,7 @@ namespace prismesh::kiosk::tools::mesh_operations {
 
 void EditPreview::ask(const mesh::document::Edit& edit) {
   previewed_.reset();
-  link_.question(ipc::PreviewEdit{edit}, [this, number = ++number_](const ipc::Answer& answer) {
+  connection_.question(ipc::PreviewEdit{edit}, [this, number = ++number_](const ipc::Answer& answer) {
     if (number != number_) return;
     Previewed& previewed = previewed_.emplace();
     previewed.number = number;

@@ -5,13 +5,13 @@
 #include <optional>
 #include <string>
 
-#include "kiosk/tools/model_link.h"
+#include "kiosk/link/connection.h"
 
 namespace prismesh::kiosk::tools::mesh_operations {
 
 class EditPreview {
  public:
-  explicit EditPreview(ModelLink& link) : link_(link) {}
+  explicit EditPreview(link::Connection& connection) : connection_(connection) {}
 
   struct Previewed {
     std::uint64_t number = 0;  ///< counts up with each question
@@ -25,7 +25,7 @@ class EditPreview {
   const std::optional<Previewed>& previewed() const { return previewed_; }
 
  private:
-  ModelLink& link_;
+  link::Connection& connection_;
   std::optional<Previewed> previewed_;
   std::uint64_t number_ = 0;
 };

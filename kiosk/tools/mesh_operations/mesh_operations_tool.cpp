@@ -5,12 +5,16 @@
 
 #include <fmt/format.h>
 
-#include "kiosk/tools/edits.h"
-#include "kiosk/tools/picking.h"
-#include "kiosk/tools/tool_set.h"
+#include "kiosk/toolkit/edits.h"
+#include "kiosk/toolkit/picking.h"
+#include "kiosk/toolkit/tool_set.h"
 
 namespace prismesh::kiosk::tools::mesh_operations {
 namespace {
+
+using input::KeyBinding;
+using input::Menu;
+using toolkit::Pointer;
 
 using display::letter;
 using mesh::repair::Operation;
@@ -19,19 +23,19 @@ constexpr std::string_view kName = "mesh operations";
 
 enum class OperationCommand : std::uint8_t { split, collapse, merge, swap, carry_out };
 
-constexpr Command command_of(OperationCommand command) { return {kName, static_cast<std::uint8_t>(command)}; }
+constexpr input::Command command_of(OperationCommand command) { return {kName, static_cast<std::uint8_t>(command)}; }
 
 constexpr std::array kKeys = {
     KeyBinding{letter('D'), true, false, command_of(OperationCommand::split), Menu::mesh, "Ctrl+D",
-               "split: the shell under the pointer, or two at their edge", kAsksForEdit},
+               "split: the shell under the pointer, or two at their edge", input::kAsksForEdit},
     KeyBinding{letter('B'), true, false, command_of(OperationCommand::collapse), Menu::mesh, "Ctrl+B",
-               "collapse the edge under the pointer to a point", kAsksForEdit},
+               "collapse the edge under the pointer to a point", input::kAsksForEdit},
     KeyBinding{letter('M'), true, false, command_of(OperationCommand::merge), Menu::mesh, "Ctrl+M",
-               "merge the triangles at the edge under the pointer", kAsksForEdit},
+               "merge the triangles at the edge under the pointer", input::kAsksForEdit},
     KeyBinding{letter('W'), true, false, command_of(OperationCommand::swap), Menu::mesh, "Ctrl+W", "swap the edge under the pointer",
-               kAsksForEdit},
+               input::kAsksForEdit},
     KeyBinding{display::Key::enter, false, false, command_of(OperationCommand::carry_out), Menu::mesh, "Enter",
-               "do what is shown as a preview", kAsksForEdit},
+               "do what is shown as a preview", input::kAsksForEdit},
 };
 
 std::string name_of(Operation operation) { return std::string(mesh::repair::name(operation)); }
@@ -52,11 +56,11 @@ void MeshOperationsTool::command(std::uint8_t number, const Pointer& pointer) {
   }
 }
 
-bool MeshOperationsTool::gesture(const Gesture& gesture) {
+bool MeshOperationsTool::gesture(const input::Gesture& gesture) {
   if (!in_mode()) return false;
-  if (const auto* node = std::get_if<NodeClicked>(&gesture))
+  if (const auto* node = std::get_if<input::NodeClicked>(&gesture))
     click(node->at);
-  else if (const auto* region = std::get_if<RegionClicked>(&gesture))
+  else if (const auto* region = std::get_if<input::RegionClicked>(&gesture))
     click(region->at);
   else
     return false;
@@ -72,9 +76,10 @@ void MeshOperationsTool::choose(Operation operation, const Pointer& pointer) {
 }
 
 /// The first click shows what would be done, a second one on the same place does it.
-void MeshOperationsTool::click(const Pixel& at) {
-  const auto shell = shell_at(context_, at);
-  const auto target = shell ? hand_target(*context_.renderer.model(), aim(context_.view), *chosen_.operation, *shell, at) : std::nullopt;
+void MeshOperationsTool::click(const input::Pixel& at) {
+  const auto shell = toolkit::shell_at(context_, at);
+  const auto target =
+      shell ? hand_target(*context_.renderer.model(), toolkit::aim(context_.view), *chosen_.operation, *shell, at) : std::nullopt;
   if (!target) return;
   if (chosen_.target == target && preview_.previewed() && preview_.previewed()->would) return carry_out();
   const ipc::SnapshotView& shown = *context_.shown.snapshot;
@@ -90,7 +95,7 @@ void MeshOperationsTool::click(const Pixel& at) {
 
 void MeshOperationsTool::carry_out() {
   if (!chosen_.edit || !preview_.previewed() || !preview_.previewed()->would) return;
-  send(context_, *chosen_.edit);
+  toolkit::send(context_, *chosen_.edit);
   // The preview stays in the picture until the edit is done.
   const std::uint64_t generation = chosen_.generation;
   if (std::exchange(chosen_.shown, 0) != 0) kept_ = generation;
@@ -116,7 +121,7 @@ void MeshOperationsTool::forget() {
 
 void MeshOperationsTool::end_kept_preview() {
   const auto& shown = context_.shown.snapshot;
-  const bool in_doubt = context_.link.editing() || !context_.link.up_to_date();
+  const bool in_doubt = context_.link.edits.under_way() || !context_.link.document.up_to_date();
   if (!kept_ || (shown && shown->info().generation == *kept_ && in_doubt)) return;
   kept_.reset();
   context_.renderer.end_preview();
@@ -151,9 +156,9 @@ void MeshOperationsTool::show_preview(const ipc::EditPreviewed& would) {
     change.clusters.push_back(static_cast<std::uint8_t>(shell.clusters));
   }
   for (const std::int64_t id : would.replaced)
-    if (const auto shell = shell_with_id(context_, id)) change.replaced.push_back(*shell);
+    if (const auto shell = toolkit::shell_with_id(context_, id)) change.replaced.push_back(*shell);
   if (const Result<void> done = context_.renderer.show_change(change); !done)
-    context_.notices.say(Notice::Kind::error, done.error().text());
+    context_.notices.say(notices::Notice::Kind::error, done.error().text());
   context_.trace.line(
       fmt::format("operation previewed shells {} warn {} fail {}", would.shell_count, would.report.after.warn, would.report.after.fail));
 }

@@ -6,22 +6,23 @@
 #include <span>
 #include <string>
 
+#include "kiosk/toolkit/abilities.h"
+#include "kiosk/toolkit/tool.h"
+#include "kiosk/toolkit/tool_context.h"
 #include "kiosk/tools/mesh_operations/by_hand.h"
 #include "kiosk/tools/mesh_operations/edit_preview.h"
-#include "kiosk/tools/tool.h"
-#include "kiosk/tools/tool_context.h"
 
 namespace prismesh::kiosk::tools::mesh_operations {
 
-std::span<const KeyBinding> keys();
+std::span<const input::KeyBinding> keys();
 
-class MeshOperationsTool final : public Tool {
+class MeshOperationsTool final : public toolkit::Tool, public toolkit::TakesGestures, public toolkit::HasMode, public toolkit::Previews {
  public:
-  explicit MeshOperationsTool(ToolContext& context) : context_(context), preview_(context.link) {}
+  explicit MeshOperationsTool(toolkit::ToolContext& context) : context_(context), preview_(context.link.connection) {}
 
   std::string_view name() const override;
-  void command(std::uint8_t number, const Pointer& pointer) override;
-  bool gesture(const Gesture& gesture) override;
+  void command(std::uint8_t number, const toolkit::Pointer& pointer) override;
+  bool gesture(const input::Gesture& gesture) override;
   bool in_mode() const override { return chosen_.operation.has_value(); }
   bool leave_mode() override;
   void leave_preview() override;
@@ -38,14 +39,14 @@ class MeshOperationsTool final : public Tool {
     std::uint64_t generation = 0;
     std::uint64_t shown = 0;  ///< number of the preview that is in the picture; 0: none
   };
-  void choose(mesh::repair::Operation operation, const Pointer& pointer);
-  void click(const Pixel& at);
+  void choose(mesh::repair::Operation operation, const toolkit::Pointer& pointer);
+  void click(const input::Pixel& at);
   void carry_out();
   void forget();
   void end_kept_preview();
   void show_preview(const ipc::EditPreviewed& would);
 
-  ToolContext& context_;
+  toolkit::ToolContext& context_;
   EditPreview preview_;
   Chosen chosen_;
   std::optional<std::uint64_t> kept_;  ///< generation whose preview stays until its edit is done

@@ -113,7 +113,7 @@ void rows(const PartFacts& facts, Wanted& wanted) {
 
 }  // namespace
 
-std::vector<SetVisibility> part_list(const PartFacts& facts, PanelLayout& layout) {
+std::vector<SetVisibility> part_list(const PartFacts& facts, panels::PanelLayout& layout) {
   Wanted wanted;
   panels::section(facts.files.empty() ? "Parts" : "Files and parts");
   const auto hidden = std::count_if(facts.parts.begin(), facts.parts.end(), [](const PartRow& part) { return part.hidden; });

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "kiosk/tools/panel_layout.h"
+#include "kiosk/panels/panel_layout.h"
 #include "mesh/document/edit.h"
 
 namespace prismesh::kiosk::tools::parts {
@@ -39,6 +39,6 @@ struct SetVisibility {
 };
 
 /// Lays the list out (inside Gui::layout). Returns what the user asked for.
-std::vector<SetVisibility> part_list(const PartFacts& facts, PanelLayout& layout);
+std::vector<SetVisibility> part_list(const PartFacts& facts, panels::PanelLayout& layout);
 
 }  // namespace prismesh::kiosk::tools::parts

@@ -6,14 +6,16 @@
 #include <vector>
 
 #include "kiosk/render/palette.h"
-#include "kiosk/tools/edits.h"
+#include "kiosk/toolkit/edits.h"
+#include "kiosk/toolkit/picking.h"
 #include "kiosk/tools/parts/file_expression.h"
 #include "kiosk/tools/parts/parts_keys.h"
-#include "kiosk/tools/picking.h"
 #include "mesh/select/expression.h"
 
 namespace prismesh::kiosk::tools::parts {
 namespace {
+
+using toolkit::Pointer;
 
 using mesh::document::VisibilityAction;
 
@@ -29,7 +31,7 @@ bool all_in(const std::vector<std::int64_t>& ids, const std::vector<std::int64_t
 
 }  // namespace
 
-std::span<const KeyBinding> keys() { return kKeys; }
+std::span<const input::KeyBinding> keys() { return kKeys; }
 
 std::string_view PartsTool::name() const { return kName; }
 
@@ -51,11 +53,11 @@ void PartsTool::set(const std::optional<std::string>& on, VisibilityAction actio
   mesh::document::SetParts edit;
   edit.action = action;
   edit.on = on;
-  send(context_, std::move(edit));
+  toolkit::send(context_, std::move(edit));
 }
 
 std::optional<mesh::PartIndex> PartsTool::part_at(const Pointer& pointer) const {
-  const auto shell = shell_at(context_, pointer);
+  const auto shell = toolkit::shell_at(context_, pointer);
   const auto& shown = context_.shown.snapshot;
   if (!shell || shell->value >= shown->shell_count()) return std::nullopt;
   const mesh::PartIndex part = shown->shell_part(shell->value);
@@ -72,9 +74,9 @@ void PartsTool::set_part(VisibilityAction action, const Pointer& pointer) {
 /// The file of the part under the pointer; of several files that hold the part the first. Locking unlocks what is locked.
 void PartsTool::set_file(VisibilityAction action, const Pointer& pointer) {
   const auto index = part_at(pointer);
-  if (!index || !context_.link.state()) return;
+  if (!index || !context_.link.document.state()) return;
   const ipc::SnapshotPart& part = context_.shown.snapshot->info().parts[index->value];
-  for (const ipc::DeckFile& file : context_.link.state()->files) {
+  for (const ipc::DeckFile& file : context_.link.document.state()->files) {
     if (!std::binary_search(file.parts.begin(), file.parts.end(), part.id)) continue;
     const bool unlocks = action == VisibilityAction::lock && part.locked;
     return set(file_expression(file.name), unlocks ? VisibilityAction::unlock : action);
@@ -103,20 +105,20 @@ PartFacts PartsTool::facts() const {
     if (part.hidden) hidden.push_back(part.id);
     if (part.locked) locked.push_back(part.id);
   }
-  if (!context_.link.state() || list_rows() == facts.parts.size()) return facts;  // one file is the deck itself
+  if (!context_.link.document.state() || list_rows() == facts.parts.size()) return facts;  // one file is the deck itself
   std::sort(hidden.begin(), hidden.end());
   std::sort(locked.begin(), locked.end());
-  for (const ipc::DeckFile& file : context_.link.state()->files)
+  for (const ipc::DeckFile& file : context_.link.document.state()->files)
     facts.files.push_back({file.name, file.shells, file.parts.size(), all_in(file.parts, hidden), all_in(file.parts, locked)});
   return facts;
 }
 
 std::size_t PartsTool::list_rows() const {
-  const std::size_t files = context_.link.state() ? context_.link.state()->files.size() : 0;
+  const std::size_t files = context_.link.document.state() ? context_.link.document.state()->files.size() : 0;
   return context_.shown.snapshot->info().parts.size() + (files > 1 ? files : 0);
 }
 
-void PartsTool::draw_list(PanelLayout& layout) {
+void PartsTool::draw_list(panels::PanelLayout& layout) {
   for (const SetVisibility& wanted : part_list(facts(), layout)) layout.ask([this, wanted] { set(wanted.on, wanted.action); });
 }
 

@@ -6,33 +6,34 @@
 #include <span>
 #include <string>
 
+#include "kiosk/toolkit/abilities.h"
+#include "kiosk/toolkit/tool.h"
+#include "kiosk/toolkit/tool_context.h"
 #include "kiosk/tools/parts/part_list.h"
-#include "kiosk/tools/tool.h"
-#include "kiosk/tools/tool_context.h"
 
 namespace prismesh::kiosk::tools::parts {
 
-std::span<const KeyBinding> keys();
+std::span<const input::KeyBinding> keys();
 
-class PartsTool final : public Tool {
+class PartsTool final : public toolkit::Tool, public toolkit::HasList {
  public:
-  explicit PartsTool(ToolContext& context) : context_(context) {}
+  explicit PartsTool(toolkit::ToolContext& context) : context_(context) {}
 
   std::string_view name() const override;
-  void command(std::uint8_t number, const Pointer& pointer) override;
-  void draw_list(PanelLayout& layout) override;
+  void command(std::uint8_t number, const toolkit::Pointer& pointer) override;
+  void draw_list(panels::PanelLayout& layout) override;
   std::size_t list_rows() const override;
 
  private:
-  std::optional<mesh::PartIndex> part_at(const Pointer& pointer) const;
-  void set_part(mesh::document::VisibilityAction action, const Pointer& pointer);
-  void set_file(mesh::document::VisibilityAction action, const Pointer& pointer);
+  std::optional<mesh::PartIndex> part_at(const toolkit::Pointer& pointer) const;
+  void set_part(mesh::document::VisibilityAction action, const toolkit::Pointer& pointer);
+  void set_file(mesh::document::VisibilityAction action, const toolkit::Pointer& pointer);
   void show_all();
   /// `on`: an expression of parts; none: those of the selection.
   void set(const std::optional<std::string>& on, mesh::document::VisibilityAction action);
   PartFacts facts() const;
 
-  ToolContext& context_;
+  toolkit::ToolContext& context_;
 };
 
 }  // namespace prismesh::kiosk::tools::parts

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "kiosk/tools/command.h"
+#include "kiosk/input/command.h"
 
 namespace prismesh::kiosk::tools::quality {
 
@@ -27,6 +27,6 @@ enum class QualityCommand : std::uint8_t {
   relax_threshold,
 };
 
-constexpr Command command_of(QualityCommand command) { return {kName, static_cast<std::uint8_t>(command)}; }
+constexpr input::Command command_of(QualityCommand command) { return {kName, static_cast<std::uint8_t>(command)}; }
 
 }  // namespace prismesh::kiosk::tools::quality

@@ -6,13 +6,13 @@
 #include <string>
 #include <utility>
 
-#include "kiosk/tools/model_link.h"
+#include "kiosk/link/model_link.h"
 
 namespace prismesh::kiosk::tools::quality {
 
 class QualityLink {
  public:
-  explicit QualityLink(ModelLink& link) : link_(link) {}
+  explicit QualityLink(link::ModelLink& link) : link_(link) {}
 
   /// Which figures are wanted.
   struct Wish {
@@ -37,7 +37,7 @@ class QualityLink {
   void select(const ipc::QualityBar& bar, const Wish& wish, mesh::document::SelectMode mode);
 
  private:
-  ModelLink& link_;
+  link::ModelLink& link_;
   std::optional<ipc::Quality> figures_;
   Wish figures_of_;
   std::optional<std::pair<Wish, std::uint64_t>> refused_;  ///< of which generation: asking again would change nothing

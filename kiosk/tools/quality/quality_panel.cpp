@@ -7,9 +7,9 @@
 #include <imgui.h>
 
 #include "base/readable_number.h"
+#include "kiosk/input/key_table.h"
 #include "kiosk/panels/text.h"
 #include "kiosk/panels/widgets.h"
-#include "kiosk/tools/key_table.h"
 #include "kiosk/tools/quality/criteria_section.h"
 #include "kiosk/tools/quality/quality_keys.h"
 #include "kiosk/tools/quality/quality_words.h"
@@ -17,6 +17,8 @@
 namespace prismesh::kiosk::tools::quality {
 
 namespace {
+
+using panels::PanelLayout;
 
 using mesh::document::SelectMode;
 using panels::draw_signal;
@@ -205,7 +207,7 @@ void parts_section(const QualityFacts& facts) {
 
 void limits_rows(const QualityFacts& facts, PanelLayout& layout) {
   const auto row = [&](const char* label, const std::optional<double>& limit, const std::string& without, QualityCommand command) {
-    panels::setting(label, limit ? panels::length_text(*limit, facts.length_unit) : without, binding_of(kKeys, command_of(command)),
+    panels::setting(label, limit ? panels::length_text(*limit, facts.length_unit) : without, input::binding_of(kKeys, command_of(command)),
                     layout);
   };
   row("nodes move at most", facts.limits.max_move.free, "no limit", QualityCommand::sheet_limit);
@@ -249,7 +251,7 @@ void commands_section(const QualityFacts& facts, PanelLayout& layout) {
       ImGui::PushID(label);
       if (ImGui::SmallButton(text)) layout.ask(command_of(command));
       ImGui::PopID();
-      panels::hint(binding_of(kKeys, command_of(command)));
+      panels::hint(input::binding_of(kKeys, command_of(command)));
     }
   };
   section("Mend");

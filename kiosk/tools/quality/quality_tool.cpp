@@ -5,15 +5,15 @@
 #include <fmt/format.h>
 
 #include "kiosk/panels/number_box.h"
-#include "kiosk/tools/edits.h"
-#include "kiosk/tools/open_panels.h"
-#include "kiosk/tools/picking.h"
+#include "kiosk/toolkit/edits.h"
+#include "kiosk/toolkit/open_panels.h"
+#include "kiosk/toolkit/picking.h"
+#include "kiosk/toolkit/tool_set.h"
 #include "kiosk/tools/quality/counts_section.h"
 #include "kiosk/tools/quality/quality_keys.h"
 #include "kiosk/tools/quality/quality_panel.h"
 #include "kiosk/tools/quality/quality_words.h"
 #include "kiosk/tools/quality/set_limit.h"
-#include "kiosk/tools/tool_set.h"
 #include "mesh/quality/criteria.h"
 
 namespace prismesh::kiosk::tools::quality {
@@ -22,14 +22,16 @@ using mesh::document::Relax;
 using mesh::document::RelaxMode;
 using mesh::document::Repair;
 using mesh::document::Scope;
+using panels::PanelLayout;
+using toolkit::Pointer;
 
-std::span<const KeyBinding> keys() { return kKeys; }
+std::span<const input::KeyBinding> keys() { return kKeys; }
 
 std::string_view QualityTool::name() const { return kName; }
 
 void QualityTool::command(std::uint8_t number, const Pointer& pointer) {
   switch (static_cast<QualityCommand>(number)) {
-    case QualityCommand::panel: toggle_left(context_, this); break;
+    case QualityCommand::panel: toolkit::toggle_left(context_, this); break;
     case QualityCommand::next_error: step_error(1); break;
     case QualityCommand::previous_error: step_error(-1); break;
     case QualityCommand::damaged_only: show_damaged_only(!wish_.damaged); break;
@@ -53,13 +55,13 @@ void QualityTool::relax(Scope scope) {
   edit.scope = scope;
   edit.max_move = limits_.max_move;
   edit.angle = context_.selection.crease_angle;
-  send(context_, edit);
+  toolkit::send(context_, edit);
 }
 
 void QualityTool::relax_from(const Pointer& pointer) {
-  const auto node = pointer ? shown_node_at(context_, *pointer) : std::nullopt;
+  const auto node = pointer ? toolkit::shown_node_at(context_, *pointer) : std::nullopt;
   if (!node) {
-    context_.notices.say(Notice::Kind::information, "Point at the node from which the mesh shall be relaxed.");
+    context_.notices.say(notices::Notice::Kind::information, "Point at the node from which the mesh shall be relaxed.");
     return;
   }
   Relax edit;
@@ -69,7 +71,7 @@ void QualityTool::relax_from(const Pointer& pointer) {
   edit.threshold = limits_.threshold;
   edit.max_move = limits_.max_move;
   edit.angle = context_.selection.crease_angle;
-  send(context_, edit);
+  toolkit::send(context_, edit);
 }
 
 void QualityTool::repair(Scope scope) {
@@ -77,14 +79,14 @@ void QualityTool::repair(Scope scope) {
   edit.scope = scope;
   edit.max_move = limits_.max_move;
   edit.angle = context_.selection.crease_angle;
-  send(context_, edit);
+  toolkit::send(context_, edit);
 }
 
 // --- limits ---
 
 void QualityTool::type_limit(MendLimit which) {
   limit_problem_.clear();
-  open_dialog(context_, this, static_cast<int>(which));
+  toolkit::open_dialog(context_, this, static_cast<int>(which));
 }
 
 void QualityTool::enter_limit(MendLimit which, const std::string& text) {
@@ -94,7 +96,7 @@ void QualityTool::enter_limit(MendLimit which, const std::string& text) {
     return;
   }
   limits_ = *wanted;
-  close_dialog(context_);
+  toolkit::close_dialog(context_);
   const auto told = [&](MendLimit each) {
     const std::string typed = typed_limit(limits_, each);
     return typed.empty() ? std::string("none") : typed;
@@ -123,7 +125,7 @@ void QualityTool::follow_figures() {
   const auto same =
       std::find_if(figures->errors.begin(), figures->errors.end(), [&](const ipc::QualityError& error) { return is_the_error(error); });
   if (same != figures->errors.end()) error_ = static_cast<std::size_t>(same - figures->errors.begin());
-  marked_ = shell_with_id(context_, error_shell_);
+  marked_ = toolkit::shell_with_id(context_, error_shell_);
 }
 
 void QualityTool::panel_changed() {
@@ -159,7 +161,7 @@ void QualityTool::leave_error() {
 
 void QualityTool::step_error(int by) {
   if (!context_.shown.snapshot) return;
-  if (!is_open()) return show_left(context_, this);
+  if (!is_open()) return toolkit::show_left(context_, this);
   const ipc::Quality* figures = link_.figures();
   if (figures == nullptr || figures->errors.empty()) return;
   const auto count = static_cast<std::ptrdiff_t>(figures->errors.size());
@@ -190,10 +192,10 @@ void QualityTool::go_to_error(std::size_t error) {
   error_ = error;
   error_shell_ = wrong.shell;
   error_node_ = wrong.node;
-  marked_ = shell_with_id(context_, wrong.shell);
-  PictureView& view = context_.view;
+  marked_ = toolkit::shell_with_id(context_, wrong.shell);
+  toolkit::PictureView& view = context_.view;
   const mesh::Vec3 at(wrong.at[0], wrong.at[1], wrong.at[2]);
-  const double scale = scale_to_look_at(target_size_at(marked_), view.view.mm_per_unit, aim(view).mm_per_pixel());
+  const double scale = toolkit::scale_to_look_at(target_size_at(marked_), view.view.mm_per_unit, toolkit::aim(view).mm_per_pixel());
   view.glide.begin(at, scale, context_.clock.now_ns());
   context_.trace.line(fmt::format("error {} of {} {}", error + 1, figures->error_count, error_words(wrong)));
 }
@@ -213,9 +215,9 @@ void QualityTool::act(const QualityAction& action) {
   else if (const auto* bar = std::get_if<BarClicked>(&action))
     select_bar(*bar);
   else if (const auto* size = std::get_if<SizeChosen>(&action))
-    send(context_, mesh::document::SetTargetSize{size->size, std::nullopt});
+    toolkit::send(context_, mesh::document::SetTargetSize{size->size, std::nullopt});
   else if (const auto* criteria = std::get_if<CriteriaChosen>(&action))
-    send(context_, mesh::document::SetCriteria{criteria->criteria, std::nullopt, std::nullopt});
+    toolkit::send(context_, mesh::document::SetCriteria{criteria->criteria, std::nullopt, std::nullopt});
   else if (std::holds_alternative<CriteriaListed>(action))
     list_criteria();
   else
@@ -246,7 +248,7 @@ void QualityTool::list_criteria() {
 void QualityTool::document_changed() {
   leave_error();
   limits_ = {};
-  if (context_.open.dialog.owner == this) close_dialog(context_);
+  if (context_.open.dialog.owner == this) toolkit::close_dialog(context_);
   if (!criteria_files_.empty()) list_criteria();
 }
 
@@ -268,7 +270,7 @@ void QualityTool::draw_status(PanelLayout&) {
   CountsFacts facts;
   facts.counts = context_.shown.snapshot->info().counts;
   facts.clusters = context_.shown.snapshot->size(ipc::SnapshotArray::clusters);
-  const RemoteDrag* drag = context_.tools.pulling() ? context_.link.drag() : nullptr;
+  const link::RunningDrag* drag = context_.tools.pulling() ? context_.link.drag.running() : nullptr;
   if (drag != nullptr && drag->begun() && drag->frame().sequence > 0) facts.pulled = drag->frame().counts;
   facts.hidden_glyphs = context_.tools.glyphs_hidden();
   facts.glyphs_left_out = context_.glyphs_left_out;

@@ -10,38 +10,39 @@
 #include <vector>
 
 #include "kiosk/panels/entry_box.h"
+#include "kiosk/toolkit/abilities.h"
+#include "kiosk/toolkit/tool.h"
+#include "kiosk/toolkit/tool_context.h"
 #include "kiosk/tools/quality/mend_limits.h"
 #include "kiosk/tools/quality/quality_facts.h"
 #include "kiosk/tools/quality/quality_link.h"
-#include "kiosk/tools/tool.h"
-#include "kiosk/tools/tool_context.h"
 
 namespace prismesh::kiosk::tools::quality {
 
-std::span<const KeyBinding> keys();
+std::span<const input::KeyBinding> keys();
 
-class QualityTool final : public Tool {
+class QualityTool final : public toolkit::Tool, public toolkit::HidesGlyphs, public toolkit::HasStatus, public toolkit::HasDialogs {
  public:
-  explicit QualityTool(ToolContext& context) : context_(context), link_(context.link) {}
+  explicit QualityTool(toolkit::ToolContext& context) : context_(context), link_(context.link) {}
 
   std::string_view name() const override;
-  void command(std::uint8_t number, const Pointer& pointer) override;
+  void command(std::uint8_t number, const toolkit::Pointer& pointer) override;
   Result<void> follow() override;
   void document_changed() override;
   void add_to_picture(render::Picture& picture) const override;
   std::string glyphs_hidden() const override;
   std::string_view panel_name() const override { return "quality"; }
-  void draw_left(PanelLayout& layout) override;
+  void draw_left(panels::PanelLayout& layout) override;
   void panel_changed() override;
-  void draw_status(PanelLayout& layout) override;
-  void draw_dialog(int kind, bool opened, PanelLayout& layout) override;
+  void draw_status(panels::PanelLayout& layout) override;
+  void draw_dialog(int kind, bool opened, panels::PanelLayout& layout) override;
 
  private:
   bool is_the_error(const ipc::QualityError& error) const { return error.shell == error_shell_ && error.node == error_node_; }
   bool is_open() const { return context_.open.left == this; }
   void follow_figures();
   void relax(mesh::document::Scope scope);
-  void relax_from(const Pointer& pointer);
+  void relax_from(const toolkit::Pointer& pointer);
   void repair(mesh::document::Scope scope);
   void type_limit(MendLimit which);
   void enter_limit(MendLimit which, const std::string& text);
@@ -56,7 +57,7 @@ class QualityTool final : public Tool {
   void go_to_error(std::size_t error);
   void leave_error();
 
-  ToolContext& context_;
+  toolkit::ToolContext& context_;
   QualityLink link_;
   QualityLink::Wish wish_;
   std::optional<std::size_t> error_;  ///< the error that the view went to, by its place in the list

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "kiosk/tools/typed_numbers.h"
+#include "kiosk/input/typed_numbers.h"
 
 namespace prismesh::kiosk::tools::quality {
 namespace {
@@ -24,8 +24,8 @@ Result<MendLimits> with_limit(const MendLimits& now, MendLimit which, std::strin
   MendLimits wanted = now;
   std::optional<double>& number = number_of(wanted, which);
   number.reset();
-  if (is_blank(text)) return wanted;
-  const Result<std::vector<double>> numbers = parse_numbers(text);
+  if (input::is_blank(text)) return wanted;
+  const Result<std::vector<double>> numbers = input::parse_numbers(text);
   if (!numbers) return fail(numbers.error());
   const bool zero_too = which == MendLimit::line;
   const double typed = numbers->front();

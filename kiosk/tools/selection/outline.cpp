@@ -2,6 +2,8 @@
 
 namespace prismesh::kiosk::tools::selection {
 
+using input::Pixel;
+
 std::vector<Pixel> kept_right_of(const std::vector<Pixel>& outline, double min_x) {
   std::vector<Pixel> kept;
   for (std::size_t i = 0; i < outline.size(); ++i) {

@@ -5,13 +5,15 @@
 
 #include <imgui.h>
 
+#include "kiosk/input/key_table.h"
 #include "kiosk/panels/text.h"
 #include "kiosk/panels/widgets.h"
-#include "kiosk/tools/key_table.h"
 #include "kiosk/tools/selection/selection_keys.h"
 
 namespace prismesh::kiosk::tools::selection {
 namespace {
+
+using panels::PanelLayout;
 
 /// Two choices beside a label; a command changes between them.
 void choice(const char* label, std::array<const char*, 2> names, bool first, SelectionCommand change, PanelLayout& layout) {
@@ -32,8 +34,8 @@ std::optional<RegionSettings> select_section(const SelectFacts& facts, PanelLayo
   choice("draw", {"lasso", "rectangle"}, facts.lasso, SelectionCommand::outline_kind, layout);
   choice("takes", {"visible", "through"}, !facts.through, SelectionCommand::toggle_through, layout);
   constexpr std::array<const char*, kRegionBounds> kBounds{"features", "single creases", "part", "piece", "free edge"};
-  panels::setting("region", kBounds[static_cast<std::size_t>(facts.region.by)], binding_of(kKeys, command_of(SelectionCommand::region_by)),
-                  layout);
+  panels::setting("region", kBounds[static_cast<std::size_t>(facts.region.by)],
+                  input::binding_of(kKeys, command_of(SelectionCommand::region_by)), layout);
   std::optional<RegionSettings> wanted;
   if (has_angle(facts.region.by)) {
     auto angle = static_cast<float>(facts.region.angle);

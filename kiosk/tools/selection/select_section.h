@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "kiosk/tools/panel_layout.h"
+#include "kiosk/panels/panel_layout.h"
 #include "mesh/document/edit.h"
 
 namespace prismesh::kiosk::tools::selection {
@@ -29,6 +29,6 @@ struct SelectFacts {
 };
 
 /// Lays the section out (inside Gui::layout). Returns other settings, if the user chose some.
-std::optional<RegionSettings> select_section(const SelectFacts& facts, PanelLayout& layout);
+std::optional<RegionSettings> select_section(const SelectFacts& facts, panels::PanelLayout& layout);
 
 }  // namespace prismesh::kiosk::tools::selection

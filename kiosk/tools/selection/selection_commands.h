@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "kiosk/tools/command.h"
+#include "kiosk/input/command.h"
 
 namespace prismesh::kiosk::tools::selection {
 
@@ -24,6 +24,6 @@ enum class SelectionCommand : std::uint8_t {
   region_across_welds,
 };
 
-constexpr Command command_of(SelectionCommand command) { return {kName, static_cast<std::uint8_t>(command)}; }
+constexpr input::Command command_of(SelectionCommand command) { return {kName, static_cast<std::uint8_t>(command)}; }
 
 }  // namespace prismesh::kiosk::tools::selection

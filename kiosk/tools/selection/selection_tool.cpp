@@ -4,15 +4,21 @@
 
 #include <fmt/format.h>
 
-#include "kiosk/tools/edits.h"
-#include "kiosk/tools/open_panels.h"
-#include "kiosk/tools/picking.h"
+#include "kiosk/toolkit/edits.h"
+#include "kiosk/toolkit/open_panels.h"
+#include "kiosk/toolkit/picking.h"
 #include "kiosk/tools/selection/outline.h"
 #include "kiosk/tools/selection/selection_keys.h"
 #include "mesh/select/expression.h"
 
 namespace prismesh::kiosk::tools::selection {
 namespace {
+
+using input::NodeClicked;
+using input::OutlineDone;
+using input::OutlineDrawn;
+using input::Pixel;
+using panels::PanelLayout;
 
 using mesh::document::RegionBy;
 using mesh::document::SelectMode;
@@ -37,20 +43,20 @@ std::vector<std::array<double, 2>> outline_of(const std::vector<Pixel>& pixels, 
 
 }  // namespace
 
-std::span<const KeyBinding> keys() { return kKeys; }
+std::span<const input::KeyBinding> keys() { return kKeys; }
 
 std::string_view SelectionTool::name() const { return kName; }
 
-void SelectionTool::command(std::uint8_t number, const Pointer& pointer) {
+void SelectionTool::command(std::uint8_t number, const toolkit::Pointer& pointer) {
   switch (static_cast<SelectionCommand>(number)) {
     case SelectionCommand::expression:
-      if (context_.shown.snapshot) open_dialog(context_, this);
+      if (context_.shown.snapshot) toolkit::open_dialog(context_, this);
       break;
     case SelectionCommand::outline_kind: draws_lasso_ = !draws_lasso_; break;
     case SelectionCommand::toggle_through: through_ = !through_; break;
-    case SelectionCommand::grow: send(context_, mesh::document::Grow{}); break;
-    case SelectionCommand::shrink: send(context_, mesh::document::Shrink{}); break;
-    case SelectionCommand::invert: send(context_, mesh::document::Invert{}); break;
+    case SelectionCommand::grow: toolkit::send(context_, mesh::document::Grow{}); break;
+    case SelectionCommand::shrink: toolkit::send(context_, mesh::document::Shrink{}); break;
+    case SelectionCommand::invert: toolkit::send(context_, mesh::document::Invert{}); break;
     case SelectionCommand::region:
       if (pointer) select_region(*pointer, SelectMode::set);
       break;
@@ -63,18 +69,18 @@ void SelectionTool::command(std::uint8_t number, const Pointer& pointer) {
 
 // --- gestures ---
 
-bool SelectionTool::gesture(const Gesture& gesture) {
+bool SelectionTool::gesture(const input::Gesture& gesture) {
   if (const auto* node = std::get_if<NodeClicked>(&gesture))
     click(*node);
-  else if (const auto* region = std::get_if<RegionClicked>(&gesture))
+  else if (const auto* region = std::get_if<input::RegionClicked>(&gesture))
     select_region(region->at, region->mode);
-  else if (std::holds_alternative<TakeBackClicked>(gesture))
+  else if (std::holds_alternative<input::TakeBackClicked>(gesture))
     step_back();
   else if (const auto* drawn = std::get_if<OutlineDrawn>(&gesture))
     draw(*drawn);
   else if (const auto* done = std::get_if<OutlineDone>(&gesture))
     take(*done);
-  else if (const auto* turned = std::get_if<AngleTurned>(&gesture))
+  else if (const auto* turned = std::get_if<input::AngleTurned>(&gesture))
     change_angle(turned->steps * kAngleStep);
   else
     return false;
@@ -83,7 +89,7 @@ bool SelectionTool::gesture(const Gesture& gesture) {
 
 void SelectionTool::click(const NodeClicked& click) {
   if (!context_.shown.snapshot) return;
-  const std::optional<mesh::NodeIndex> node = node_at(context_, click.at);
+  const std::optional<mesh::NodeIndex> node = toolkit::node_at(context_, click.at);
   if (!node) {
     if (click.mode == SelectMode::set) clear();
     return;
@@ -95,7 +101,8 @@ void SelectionTool::click(const NodeClicked& click) {
 void SelectionTool::step_back() {
   context_.selection.last_region.reset();
   const auto& shown = context_.shown.snapshot;
-  if (shown && shown->info().can_undo && is_selecting(context_.link.made_by())) send(context_, mesh::document::Undo{});
+  if (shown && shown->info().can_undo && link::is_selecting(context_.link.document.made_by()))
+    toolkit::send(context_, mesh::document::Undo{});
 }
 
 void SelectionTool::draw(const OutlineDrawn& outline) {
@@ -118,11 +125,11 @@ void SelectionTool::take(const OutlineDone& outline) {
   context_.selection.last_region.reset();
   mesh::document::SelectLasso edit;
   edit.outline = outline_of(way, size);
-  const Eigen::Matrix4d clip = aim(context_.view).clip_from_deck();
+  const Eigen::Matrix4d clip = toolkit::aim(context_.view).clip_from_deck();
   std::copy_n(clip.data(), 16, edit.view.begin());  // both are column-major
   edit.visible = !through_;
   edit.mode = outline.mode;
-  send(context_, std::move(edit));
+  toolkit::send(context_, std::move(edit));
 }
 
 void SelectionTool::cancel_gesture() {
@@ -139,7 +146,7 @@ void SelectionTool::clear() {
   mesh::document::Select edit;
   edit.expr = "all";
   edit.mode = SelectMode::subtract;
-  send(context_, std::move(edit));
+  toolkit::send(context_, std::move(edit));
 }
 
 void SelectionTool::select_node(mesh::NodeIndex node, SelectMode mode) {
@@ -149,11 +156,11 @@ void SelectionTool::select_node(mesh::NodeIndex node, SelectMode mode) {
   mesh::document::Select edit;
   edit.expr = mesh::select::to_expression(std::move(ids));
   edit.mode = mode;
-  send(context_, std::move(edit));
+  toolkit::send(context_, std::move(edit));
 }
 
 void SelectionTool::select_region(const Pixel& at, SelectMode mode) {
-  const std::optional<mesh::NodeIndex> node = shown_node_at(context_, at);
+  const std::optional<mesh::NodeIndex> node = toolkit::shown_node_at(context_, at);
   if (!node) return;
   if (mode != SelectMode::subtract) context_.selection.last_clicked = node;
   mesh::document::SelectRegion edit;
@@ -163,7 +170,7 @@ void SelectionTool::select_region(const Pixel& at, SelectMode mode) {
   edit.across_welds = region_across_welds_;
   edit.mode = mode;
   context_.selection.last_region = edit;
-  send(context_, edit);
+  toolkit::send(context_, edit);
 }
 
 /// The region that was selected last follows the angle.
@@ -175,7 +182,7 @@ void SelectionTool::change_angle(double degrees) {
   auto& region = context_.selection.last_region;
   if (!region || region->mode != SelectMode::set || !has_angle(region->by)) return;
   region->angle = angle;
-  send(context_, *region);
+  toolkit::send(context_, *region);
 }
 
 void SelectionTool::set_region(const RegionSettings& region) {
@@ -194,7 +201,7 @@ void SelectionTool::enter(const ExpressionEntered& entered) {
   edit.expr = entered.text;
   edit.kind = entered.kind;
   edit.mode = entered.mode;
-  send(context_, std::move(edit));
+  toolkit::send(context_, std::move(edit));
 }
 
 // --- picture and panels ---
@@ -219,7 +226,7 @@ void SelectionTool::draw_document_section(PanelLayout& layout) {
 void SelectionTool::draw_dialog(int, bool opened, PanelLayout& layout) {
   ExpressionFacts facts;
   facts.earlier = &expressions_.entries();
-  if (const auto& counted = context_.link.counted()) {
+  if (const auto& counted = context_.link.count.answer()) {
     facts.counted_for = counted->expr;
     if (counted->counted) facts.count = ExpressionFacts::Count{counted->counted->nodes, counted->counted->shells, counted->counted->parts};
     if (counted->failed) facts.problem = Error{counted->failed->file, counted->failed->line, counted->failed->message}.text();
@@ -228,11 +235,11 @@ void SelectionTool::draw_dialog(int, bool opened, PanelLayout& layout) {
   const ExpressionAsked asked = expression_box(facts, layout.picture, opened, entry_);
   if (asked.typed)
     layout.ask([this, typed = *asked.typed] {
-      if (!typed.text.empty()) context_.link.count(typed.text, typed.kind);
+      if (!typed.text.empty()) context_.link.count.ask(typed.text, typed.kind);
     });
   if (!asked.entered) return;
   layout.ask([this, entered = *asked.entered] { enter(entered); });
-  layout.ask([this] { close_dialog(context_); });
+  layout.ask([this] { toolkit::close_dialog(context_); });
 }
 
 }  // namespace prismesh::kiosk::tools::selection

@@ -8,7 +8,7 @@
 
 #include <Eigen/Geometry>
 
-#include "kiosk/tools/seen_shell.h"
+#include "kiosk/toolkit/seen_shell.h"
 
 namespace prismesh::kiosk::tools::shaping {
 
@@ -60,23 +60,23 @@ std::optional<Axis> axis_through(const Vec3& from, const Vec3& to) {
   return Axis{from, way / length};
 }
 
-std::optional<EdgeAxis> edge_at(const ModelSource& model, const stereo::Aim& aim, mesh::ShellIndex shell, const Pixel& pixel,
+std::optional<EdgeAxis> edge_at(const ModelSource& model, const stereo::Aim& aim, mesh::ShellIndex shell, const input::Pixel& pixel,
                                 double crease_degrees) {
   if (shell.value >= model.size(SnapshotArray::shell_nodes)) return std::nullopt;
   const auto nodes = model.at<ShellNodes>(SnapshotArray::shell_nodes, shell.value);
-  if (!is_whole(model, nodes)) return std::nullopt;
+  if (!toolkit::is_whole(model, nodes)) return std::nullopt;
   std::vector<Edge> edges;
   for (std::size_t i = 0; i < 4; ++i) {
     Edge edge{nodes.node[i], nodes.node[(i + 1) % 4], 0, {}};
     const auto from = stereo::pixel_of(aim, position(model, edge.a)), to = stereo::pixel_of(aim, position(model, edge.b));
     if (edge.a == edge.b || !from || !to) continue;  // a triangle has its last corner twice
-    edge.pixels = pixels_from_line(*from, *to, pixel);
+    edge.pixels = toolkit::pixels_from_line(*from, *to, pixel);
     edges.push_back(edge);
   }
   for (std::size_t c = 0; c < model.chunk_count(SnapshotArray::shell_nodes); ++c)
     for (const ShellNodes& each : model.chunk<ShellNodes>(SnapshotArray::shell_nodes, c))
       for (Edge& edge : edges)
-        if (const int sense = sense_of(each, edge); sense != 0 && is_whole(model, each))
+        if (const int sense = sense_of(each, edge); sense != 0 && toolkit::is_whole(model, each))
           edge.normals.push_back(normal_of(model, each) * sense * (edge.normals.empty() ? 1 : -1));
   const Edge* best = nullptr;
   double best_rank = 0;

@@ -21,7 +21,7 @@ struct EdgeAxis {
 };
 /// The edge of the shell under the pointer that is nearest to it; free edges, junctions and creases sharper than `crease_degrees` within
 /// reach go before edges between elements. Nothing where the shell isn't on the picture.
-std::optional<EdgeAxis> edge_at(const render::ModelSource& model, const stereo::Aim& aim, mesh::ShellIndex shell, const Pixel& pixel,
+std::optional<EdgeAxis> edge_at(const render::ModelSource& model, const stereo::Aim& aim, mesh::ShellIndex shell, const input::Pixel& pixel,
                                 double crease_degrees);
 inline constexpr double kEdgeReachPixels = 40;
 

@@ -7,7 +7,7 @@
 namespace prismesh::kiosk::tools::shaping {
 
 std::vector<std::array<mesh::Vec3, 2>> lines_of(const ipc::FollowedEdges& edges, const ipc::SnapshotView& snapshot,
-                                                const RemoteDrag* drag) {
+                                                const link::RunningDrag* drag) {
   const bool moved = drag != nullptr && drag->begun() && drag->frame().sequence > 0;
   const auto place = [&](std::uint32_t node) -> mesh::Vec3 {
     if (!moved) return snapshot.position(node);
@@ -27,12 +27,12 @@ std::vector<std::array<mesh::Vec3, 2>> lines_of(const ipc::FollowedEdges& edges,
 void FollowedEdges::ask(const std::optional<mesh::document::Edit>& edit, std::uint64_t generation) {
   const std::string question =
       edit ? ipc::encode_request(generation, ipc::FindFollowedEdges{*edit}).value_or(std::string()) : std::string();
-  if (question == asked_ && connection_ == link_.connections()) return;
+  if (question == asked_ && asked_on_ == connection_.number()) return;
   asked_ = question;
-  connection_ = link_.connections();
+  asked_on_ = connection_.number();
   ++number_;
   if (!edit) return found_.reset();
-  link_.question(ipc::FindFollowedEdges{*edit}, [this, number = number_](const ipc::Answer& answer) {
+  connection_.question(ipc::FindFollowedEdges{*edit}, [this, number = number_](const ipc::Answer& answer) {
     if (number != number_) return;
     const auto* found = std::get_if<ipc::FollowedEdges>(&answer);
     found_ = found != nullptr ? std::optional(*found) : std::nullopt;

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "ipc/model/snapshot.h"
-#include "kiosk/tools/model_link.h"
+#include "kiosk/link/remote_drag.h"
 #include "mesh/document/edit.h"
 
 namespace prismesh::kiosk::tools::shaping {
@@ -17,11 +17,12 @@ namespace prismesh::kiosk::tools::shaping {
 inline constexpr std::uint64_t kMaxSelectionToAsk = 100'000;
 
 /// The ends of edges where a snapshot has them, or where the newest frame of a drag on it has moved them. Nodes out of range are left out.
-std::vector<std::array<mesh::Vec3, 2>> lines_of(const ipc::FollowedEdges& edges, const ipc::SnapshotView& snapshot, const RemoteDrag* drag);
+std::vector<std::array<mesh::Vec3, 2>> lines_of(const ipc::FollowedEdges& edges, const ipc::SnapshotView& snapshot,
+                                                const link::RunningDrag* drag);
 
 class FollowedEdges {
  public:
-  explicit FollowedEdges(ModelLink& link) : link_(link) {}
+  explicit FollowedEdges(link::Connection& connection) : connection_(connection) {}
 
   /// Asks which edges follow this edit on this generation, unless that was the last question. Nothing: forgets the answer.
   void ask(const std::optional<mesh::document::Edit>& edit, std::uint64_t generation);
@@ -31,9 +32,9 @@ class FollowedEdges {
   }
 
  private:
-  ModelLink& link_;
+  link::Connection& connection_;
   std::string asked_;                        ///< the last question; empty: none
-  std::uint64_t connection_ = 0;             ///< on which it was asked
+  std::uint64_t asked_on_ = 0;               ///< the connection
   std::uint64_t number_ = 0;                 ///< of it: older answers don't count
   std::optional<ipc::FollowedEdges> found_;  ///< the answer
 };

@@ -8,22 +8,25 @@
 
 #include <Eigen/Geometry>
 
-#include "kiosk/tools/selected_nodes.h"
+#include "kiosk/toolkit/selected_nodes.h"
 
 namespace prismesh::kiosk::tools::shaping {
 namespace {
+
+using input::Pixel;
+using input::Under;
 
 using ipc::SnapshotArray;
 using mesh::NodeIndex;
 using render::ModelSource;
 
 std::optional<NodeIndex> nearest_to_centre(const ModelSource& model) {
-  const std::optional<Vec3> centre = selection_centre(model);
+  const std::optional<Vec3> centre = toolkit::selection_centre(model);
   if (!centre) return std::nullopt;
   const std::size_t nodes = model.size(SnapshotArray::positions);
   std::optional<NodeIndex> best;
   double best_distance = std::numeric_limits<double>::infinity();
-  for_each_selected(model, [&](std::size_t n) {
+  toolkit::for_each_selected(model, [&](std::size_t n) {
     if (n >= nodes) return;
     const double distance = (model.at<Vec3>(SnapshotArray::positions, n) - *centre).squaredNorm();
     if (!(distance < best_distance)) return;

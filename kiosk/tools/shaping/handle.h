@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <optional>
 
+#include "kiosk/input/gestures.h"
 #include "kiosk/render/model_source.h"
 #include "kiosk/render/picture.h"
 #include "kiosk/stereo/pointer.h"
-#include "kiosk/tools/gestures.h"
 
 namespace prismesh::kiosk::tools::shaping {
 
@@ -31,7 +31,7 @@ bool points_at_viewer(const stereo::Aim& aim, const Vec3& at, const Vec3& direct
 
 /// Which part of a handle a pixel is on: the ring about its foot, its arrow, the disk, or (picture) none of them. An arrow that points at
 /// the viewer stands in the ring and goes first. A handle with an axis has the ball and its circle only.
-Under part_of_handle(const stereo::Aim& aim, const render::Handle& handle, const Pixel& pixel);
+input::Under part_of_handle(const stereo::Aim& aim, const render::Handle& handle, const input::Pixel& pixel);
 inline constexpr double kRingRadiusPixels = render::kHandleRingPixels;
 
 /// The arrow's direction: along the normal, on the viewer's side of the surface, so that the model never hides it.
@@ -53,11 +53,11 @@ using Pull = mesh::document::Displacement;
 
 /// A part of a handle, where and how it is taken.
 struct HandleGrab {
-  Under handle = Under::lift_handle;
-  Vec3 at = Vec3::Zero();          ///< the handle's foot, deck coordinates
-  Vec3 direction = Vec3::UnitZ();  ///< of the arrow, unit
-  std::optional<Axis> axis{};      ///< needed by the turning handle only
-  Pixel pixel = Pixel::Zero();     ///< of the pointer
+  input::Under handle = input::Under::lift_handle;
+  Vec3 at = Vec3::Zero();                     ///< the handle's foot, deck coordinates
+  Vec3 direction = Vec3::UnitZ();             ///< of the arrow, unit
+  std::optional<Axis> axis{};                 ///< needed by the turning handle only
+  input::Pixel pixel = input::Pixel::Zero();  ///< of the pointer
 };
 
 /// One pull, from taking the handle to letting it go. The view may change meanwhile (see `hold`).
@@ -65,9 +65,9 @@ class HandlePull {
  public:
   HandlePull(const HandleGrab& grab, const stereo::Aim& aim);
   /// Where the pointer brings it; `before` is where it was, so that a turn may go round more than once.
-  Pull at(const stereo::Aim& aim, const Pixel& pixel, const Pull& before = {}) const;
+  Pull at(const stereo::Aim& aim, const input::Pixel& pixel, const Pull& before = {}) const;
   /// The view has changed: from now on this pixel means this pull.
-  void hold(const stereo::Aim& aim, const Pixel& pixel, const Pull& pull);
+  void hold(const stereo::Aim& aim, const input::Pixel& pixel, const Pull& pull);
   /// Where a pull has brought the handle's foot.
   Vec3 foot(const Pull& pull) const;
   /// The lift as the hand sees it: positive where the arrow points.
@@ -77,23 +77,23 @@ class HandlePull {
   /// The grab and the unit normal that the model server works with; the normal's sense may differ from the arrow's.
   void set_axis(const stereo::Aim& aim, const Vec3& at, const Vec3& normal);
 
-  Under handle() const { return handle_; }
+  input::Under handle() const { return handle_; }
   const Vec3& start() const { return start_; }
   const Vec3& direction() const { return direction_; }
   const std::optional<Axis>& axis() const { return axis_; }
 
  private:
   /// What the pointer points at, in the way this handle reads it, without regard to where it was taken.
-  Pull raw(const stereo::Aim& aim, const Pixel& pixel) const;
-  Vec3 on_disk(const stereo::Aim& aim, const Pixel& pixel) const;
-  double along(const stereo::Aim& aim, const Pixel& pixel) const;
-  double degrees(const stereo::Aim& aim, const Pixel& pixel) const;
+  Pull raw(const stereo::Aim& aim, const input::Pixel& pixel) const;
+  Vec3 on_disk(const stereo::Aim& aim, const input::Pixel& pixel) const;
+  double along(const stereo::Aim& aim, const input::Pixel& pixel) const;
+  double degrees(const stereo::Aim& aim, const input::Pixel& pixel) const;
 
-  Under handle_;
+  input::Under handle_;
   Vec3 start_;
   Vec3 direction_;
   std::optional<Axis> axis_;
-  Pixel taken_;
+  input::Pixel taken_;
   double sense_ = 1;       ///< of the normal against the arrow
   bool upward_ = false;    ///< the arrow points at the viewer since the pixel was last held
   bool sideways_ = false;  ///< the disk or the circle is seen from its edge

@@ -5,7 +5,7 @@
 namespace prismesh::kiosk::tools::shaping {
 
 Result<void> PullPreview::follow() {
-  const RemoteDrag* drag = link_.drag();
+  const link::RunningDrag* drag = drag_.running();
   if (drag == nullptr) {
     if (shown_) renderer_.end_preview();
     shown_ = false;

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "kiosk/tools/command.h"
+#include "kiosk/input/command.h"
 
 namespace prismesh::kiosk::tools::shaping {
 
@@ -36,6 +36,6 @@ enum class ShapingCommand : std::uint8_t {
   across_welds,
 };
 
-constexpr Command command_of(ShapingCommand command) { return {kName, static_cast<std::uint8_t>(command)}; }
+constexpr input::Command command_of(ShapingCommand command) { return {kName, static_cast<std::uint8_t>(command)}; }
 
 }  // namespace prismesh::kiosk::tools::shaping

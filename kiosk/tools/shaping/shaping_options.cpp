@@ -4,6 +4,7 @@
 
 namespace prismesh::kiosk::tools::shaping {
 
+using input::Under;
 using mesh::Vec3;
 
 Vec3 unit(DeckAxis axis) {

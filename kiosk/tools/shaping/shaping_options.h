@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "kiosk/tools/gestures.h"
+#include "kiosk/input/gestures.h"
 #include "kiosk/tools/shaping/handle.h"
 #include "mesh/document/edit.h"
 
@@ -51,7 +51,7 @@ ShapingOptions for_another_deck(ShapingOptions options);
 
 /// A part of the handle, and what it pulls.
 struct ShapedHandle {
-  Under handle = Under::lift_handle;
+  input::Under handle = input::Under::lift_handle;
   std::int64_t grab = 0;                   ///< id of the handle's node
   mesh::Vec3 middle = mesh::Vec3::Zero();  ///< of the selection, for a mirror without a place of its own
   std::optional<Axis> axis{};              ///< of the turning handle
@@ -61,6 +61,6 @@ struct ShapedHandle {
 mesh::document::Edit edit_of(const ShapedHandle& shaped, const ShapingOptions& options, const Pull& displacement);
 
 /// "Lift", "Slide", "Move", "Turn".
-std::string_view name_of(Under handle);
+std::string_view name_of(input::Under handle);
 
 }  // namespace prismesh::kiosk::tools::shaping

@@ -6,15 +6,17 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "kiosk/input/key_table.h"
 #include "kiosk/panels/text.h"
 #include "kiosk/panels/widgets.h"
-#include "kiosk/tools/key_table.h"
 #include "kiosk/tools/shaping/falloff_direction.h"
 #include "kiosk/tools/shaping/shaping_keys.h"
 #include "mesh/shape/weights.h"
 
 namespace prismesh::kiosk::tools::shaping {
 namespace {
+
+using panels::PanelLayout;
 
 using mesh::shape::Profile;
 using panels::check;
@@ -43,7 +45,7 @@ void draw_profile(const ShapingOptions& options) {
 }
 
 void set_by(const char* label, const std::string& value, ShapingCommand command, PanelLayout& layout) {
-  panels::setting(label, value, binding_of(kKeys, command_of(command)), layout);
+  panels::setting(label, value, input::binding_of(kKeys, command_of(command)), layout);
 }
 
 std::string name_of_axis(DeckAxis axis, const char* none) {
@@ -60,7 +62,7 @@ void direction_rows(const FalloffDirection& now, PanelLayout& layout) {
   for (const auto& [label, command] : sources) {
     ImGui::SameLine();
     if (ImGui::SmallButton(label)) layout.ask(command_of(command));
-    panels::hint(binding_of(kKeys, command_of(command)));
+    panels::hint(input::binding_of(kKeys, command_of(command)));
   }
 }
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "kiosk/tools/panel_layout.h"
+#include "kiosk/panels/panel_layout.h"
 #include "kiosk/tools/shaping/shaping_options.h"
 
 namespace prismesh::kiosk::tools::shaping {
@@ -13,10 +13,10 @@ namespace prismesh::kiosk::tools::shaping {
 struct ShapingFacts {
   ShapingOptions options;
   std::string length_unit;
-  Under handle = Under::lift_handle;  ///< which part of the handle a typed number pulls
+  input::Under handle = input::Under::lift_handle;  ///< which part of the handle a typed number pulls
 };
 /// Lays the panel out (inside Gui::layout). Returns other options, if the user chose some beside commands.
-std::optional<ShapingOptions> shaping_panel(const ShapingFacts& facts, PanelLayout& layout);
+std::optional<ShapingOptions> shaping_panel(const ShapingFacts& facts, panels::PanelLayout& layout);
 
 struct PullFacts {
   std::string what;  ///< "Lift", "Slide", "Move", "Turn"

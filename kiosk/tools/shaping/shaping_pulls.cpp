@@ -3,19 +3,24 @@
 
 #include <fmt/format.h>
 
-#include "kiosk/tools/open_panels.h"
-#include "kiosk/tools/picking.h"
+#include "kiosk/toolkit/open_panels.h"
+#include "kiosk/toolkit/picking.h"
+#include "kiosk/toolkit/tool_set.h"
 #include "kiosk/tools/shaping/shaping_tool.h"
 #include "kiosk/tools/shaping/typed_number.h"
-#include "kiosk/tools/tool_set.h"
 
 namespace prismesh::kiosk::tools::shaping {
 
+using input::Pixel;
+using input::Under;
+using link::RunningDrag;
+using toolkit::Pointer;
+
 void ShapingTool::begin_pull(Under handle, const Pixel& at) {
-  if (!anchor_ || context_.link.drag() != nullptr || !context_.tools.allow_edit()) return;
+  if (!anchor_ || context_.link.drag.running() != nullptr || !context_.tools.allow_edit()) return;
   context_.tools.leave_previews();
   context_.tools.edit_begins();
-  const stereo::Aim now = aim(context_.view);
+  const stereo::Aim now = toolkit::aim(context_.view);
   const bool turning = handle == Under::turn_handle;
   if (turning && !axis_) return;
   HandleGrab grab;
@@ -28,14 +33,14 @@ void ShapingTool::begin_pull(Under handle, const Pixel& at) {
   handle_ = handle;
   pulled_ = {};
   const ShapedHandle shaped{handle, anchor_->id, context_.selection.centre.value_or(anchor_->at), axis_};
-  context_.link.begin_drag(edit_of(shaped, options_, {}));
-  if (context_.link.drag() == nullptr) pull_.reset();
+  context_.link.drag.begin(edit_of(shaped, options_, {}));
+  if (context_.link.drag.running() == nullptr) pull_.reset();
 }
 
 void ShapingTool::pull_to(const Pixel& pixel) {
   pull_->pointer = pixel;
-  pulled_ = pull_->pull.at(aim(context_.view), pixel, pulled_);
-  if (pull_->axis_known) context_.link.pull(pulled_);
+  pulled_ = pull_->pull.at(toolkit::aim(context_.view), pixel, pulled_);
+  if (pull_->axis_known) context_.link.drag.pull(pulled_);
 }
 
 /// The edit gets exactly the numbers that were typed.
@@ -43,15 +48,15 @@ void ShapingTool::send_typed() {
   if (!pull_ || !pull_->typed || !pull_->axis_known) return;
   pulled_ = *pull_->typed;
   if (pull_->pull.handle() == Under::lift_handle) pulled_.distance = pull_->pull.lift_of(pull_->typed->distance);
-  context_.link.pull(pulled_);
-  context_.link.commit_drag();
+  context_.link.drag.pull(pulled_);
+  context_.link.drag.commit();
 }
 
 void ShapingTool::cancel_gesture() {
   if (!pull_) return;
   pull_.reset();
-  if (is_typing() && typing_.what == Typing::For::pull) close_dialog(context_);
-  context_.link.cancel_drag();
+  if (is_typing() && typing_.what == Typing::For::pull) toolkit::close_dialog(context_);
+  context_.link.drag.cancel();
   ++context_.changes;
 }
 
@@ -59,11 +64,11 @@ void ShapingTool::cancel_gesture() {
 void ShapingTool::view_moved(const Pointer& pointer) {
   if (!pull_) return;
   if (pointer) pull_->pointer = *pointer;
-  pull_->pull.hold(aim(context_.view), pull_->pointer, pulled_);
+  pull_->pull.hold(toolkit::aim(context_.view), pull_->pointer, pulled_);
 }
 
 Result<void> ShapingTool::follow() {
-  const RemoteDrag* drag = context_.link.drag();
+  const RunningDrag* drag = context_.link.drag.running();
   if (drag == nullptr)
     pull_.reset();
   else if (drag->begun() && pull_ && !pull_->axis_known)
@@ -74,8 +79,9 @@ Result<void> ShapingTool::follow() {
 
 /// During a pull the last answer stays: it was of the same edit.
 void ShapingTool::ask_followed_edges() {
-  const ModelLink& link = context_.link;
-  if (pull_ || link.drag() != nullptr || !link.connected() || !link.up_to_date() || context_.shown.older || !context_.shown.snapshot)
+  const link::ModelLink& link = context_.link;
+  if (pull_ || link.drag.running() != nullptr || !link.connection.connected() || !link.document.up_to_date() || context_.shown.older ||
+      !context_.shown.snapshot)
     return;
   const ipc::SnapshotInfo& info = context_.shown.snapshot->info();
   std::optional<mesh::document::Edit> edit;
@@ -85,16 +91,16 @@ void ShapingTool::ask_followed_edges() {
 }
 
 /// The server has told the grab and the normal: what was pulled or typed meanwhile goes to it.
-void ShapingTool::take_axis(const RemoteDrag& drag) {
+void ShapingTool::take_axis(const RunningDrag& drag) {
   const ipc::DragBegun& facts = drag.facts();
-  pull_->pull.set_axis(aim(context_.view), mesh::Vec3(facts.grab_position[0], facts.grab_position[1], facts.grab_position[2]),
+  pull_->pull.set_axis(toolkit::aim(context_.view), mesh::Vec3(facts.grab_position[0], facts.grab_position[1], facts.grab_position[2]),
                        mesh::Vec3(facts.normal[0], facts.normal[1], facts.normal[2]));
   pull_->axis_known = true;
   if (pull_->typed)
     send_typed();
   else
     pull_to(pull_->pointer);
-  if (pull_->released_early) context_.link.commit_drag();
+  if (pull_->released_early) context_.link.drag.commit();
 }
 
 // --- numbers ---
@@ -115,7 +121,7 @@ bool ShapingTool::begin_number(const std::string& text, const Pointer& pointer) 
   else if ((handle_ == Under::turn_handle) != axis_.has_value())
     handle_ = axis_ ? Under::turn_handle : Under::lift_handle;
   typing_ = {Typing::For::pull, text, {}};
-  open_dialog(context_, this);
+  toolkit::open_dialog(context_, this);
   return true;
 }
 
@@ -129,7 +135,7 @@ std::optional<Vec3> ShapingTool::typed_direction() const {
     default: break;
   }
   if (options_.each_normal || (!pull_ && !anchor_)) return std::nullopt;
-  return pull_ ? pull_->pull.direction() : arrow_direction(aim(context_.view), *anchor_);
+  return pull_ ? pull_->pull.direction() : arrow_direction(toolkit::aim(context_.view), *anchor_);
 }
 
 void ShapingTool::enter_number(const std::string& text) {
@@ -145,7 +151,7 @@ void ShapingTool::enter_pull(const std::string& text) {
     typing_.problem = typed.error().message;
     return;
   }
-  close_dialog(context_);
+  toolkit::close_dialog(context_);
   context_.trace.line(fmt::format("typed {} {}", name_of(handle_), text));
   if (!pull_) begin_pull(handle_, Pixel::Zero());
   if (!pull_) return;

@@ -5,13 +5,17 @@
 
 #include <fmt/format.h>
 
-#include "kiosk/tools/open_panels.h"
-#include "kiosk/tools/picking.h"
+#include "kiosk/input/typed_numbers.h"
+#include "kiosk/toolkit/open_panels.h"
+#include "kiosk/toolkit/picking.h"
 #include "kiosk/tools/shaping/falloff_direction.h"
 #include "kiosk/tools/shaping/shaping_tool.h"
-#include "kiosk/tools/typed_numbers.h"
 
 namespace prismesh::kiosk::tools::shaping {
+
+using input::Under;
+using notices::Notice;
+using toolkit::Pointer;
 
 // --- axes ---
 
@@ -34,8 +38,8 @@ void ShapingTool::pick_two_nodes(TwoNodes purpose) {
   context_.trace.line(purpose == TwoNodes::axis ? "axis picking" : "falloff picking");
 }
 
-void ShapingTool::click_node(const Pixel& at) {
-  const std::optional<mesh::NodeIndex> node = shown_node_at(context_, at);
+void ShapingTool::click_node(const input::Pixel& at) {
+  const std::optional<mesh::NodeIndex> node = toolkit::shown_node_at(context_, at);
   if (!node) return;
   const std::optional<Axis> axis = axis_pick_.clicked(context_.shown.snapshot->position(node->value));
   const bool for_axis = picks_ == TwoNodes::axis;
@@ -48,8 +52,9 @@ void ShapingTool::click_node(const Pixel& at) {
 }
 
 std::optional<EdgeAxis> ShapingTool::edge_under(const Pointer& pointer) const {
-  const auto shell = shell_at(context_, pointer);
-  return shell ? edge_at(*context_.renderer.model(), aim(context_.view), *shell, *pointer, context_.selection.crease_angle) : std::nullopt;
+  const auto shell = toolkit::shell_at(context_, pointer);
+  return shell ? edge_at(*context_.renderer.model(), toolkit::aim(context_.view), *shell, *pointer, context_.selection.crease_angle)
+               : std::nullopt;
 }
 
 void ShapingTool::axis_from_edge(const Pointer& pointer) {
@@ -120,13 +125,13 @@ void ShapingTool::change_option(ShapingCommand command) {
 
 void ShapingTool::type_for(Typing::For what, const std::optional<double>& now) {
   typing_ = {what, now ? fmt::format("{}", *now) : std::string(), {}};
-  open_dialog(context_, this);
+  toolkit::open_dialog(context_, this);
 }
 
 /// Takes a number for an option; nothing takes the number away.
 void ShapingTool::enter_option(const std::string& text) {
-  const Result<std::vector<double>> numbers = parse_numbers(text);
-  const bool limit = typing_.what == Typing::For::move_limit, off = is_blank(text);
+  const Result<std::vector<double>> numbers = input::parse_numbers(text);
+  const bool limit = typing_.what == Typing::For::move_limit, off = input::is_blank(text);
   if (!off && (!numbers || numbers->size() != 1 || (limit && !(numbers->front() > 0)))) {
     typing_.problem = !numbers ? numbers.error().message
                       : limit  ? "type one number greater than 0, or nothing"
@@ -134,7 +139,7 @@ void ShapingTool::enter_option(const std::string& text) {
     return;
   }
   (limit ? options_.max_move : options_.symmetry_place) = off ? std::nullopt : std::optional(numbers->front());
-  close_dialog(context_);
+  toolkit::close_dialog(context_);
 }
 
 }  // namespace prismesh::kiosk::tools::shaping

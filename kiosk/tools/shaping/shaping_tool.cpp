@@ -4,16 +4,20 @@
 
 #include <fmt/format.h>
 
-#include "kiosk/tools/open_panels.h"
-#include "kiosk/tools/picking.h"
+#include "kiosk/toolkit/open_panels.h"
+#include "kiosk/toolkit/picking.h"
+#include "kiosk/toolkit/tool_set.h"
 #include "kiosk/tools/shaping/falloff_direction.h"
 #include "kiosk/tools/shaping/shaping_keys.h"
 #include "kiosk/tools/shaping/shaping_panel.h"
 #include "kiosk/tools/shaping/typed_number.h"
-#include "kiosk/tools/tool_set.h"
 
 namespace prismesh::kiosk::tools::shaping {
 namespace {
+
+using input::Gesture;
+using input::Under;
+using panels::PanelLayout;
 
 using Use = render::Handle::Use;
 
@@ -28,11 +32,11 @@ Use use_of(Under handle) {
 
 }  // namespace
 
-std::span<const KeyBinding> keys() { return kKeys; }
+std::span<const input::KeyBinding> keys() { return kKeys; }
 
 std::string_view ShapingTool::name() const { return kName; }
 
-void ShapingTool::command(std::uint8_t number, const Pointer& pointer) {
+void ShapingTool::command(std::uint8_t number, const toolkit::Pointer& pointer) {
   switch (static_cast<ShapingCommand>(number)) {
     case ShapingCommand::type_number: begin_number({}, std::nullopt); break;
     case ShapingCommand::next_handle: next_handle(); break;
@@ -45,17 +49,17 @@ void ShapingTool::command(std::uint8_t number, const Pointer& pointer) {
     case ShapingCommand::along: set_falloff(next_falloff(options_.along)); break;
     case ShapingCommand::along_nodes: pick_two_nodes(TwoNodes::falloff); break;
     case ShapingCommand::along_edge: falloff_from_edge(pointer); break;
-    case ShapingCommand::along_view: set_falloff(next_falloff_of_view(options_.along, aim(context_.view).view.rotation)); break;
-    case ShapingCommand::panel: toggle_left(context_, this); break;
+    case ShapingCommand::along_view: set_falloff(next_falloff_of_view(options_.along, toolkit::aim(context_.view).view.rotation)); break;
+    case ShapingCommand::panel: toolkit::toggle_left(context_, this); break;
     default: change_option(static_cast<ShapingCommand>(number)); break;
   }
 }
 
 bool ShapingTool::gesture(const Gesture& gesture) {
   if (!in_mode()) return take_handle_gesture(gesture);
-  if (const auto* node = std::get_if<NodeClicked>(&gesture))
+  if (const auto* node = std::get_if<input::NodeClicked>(&gesture))
     click_node(node->at);
-  else if (const auto* region = std::get_if<RegionClicked>(&gesture))
+  else if (const auto* region = std::get_if<input::RegionClicked>(&gesture))
     click_node(region->at);
   else
     return take_handle_gesture(gesture);
@@ -63,19 +67,19 @@ bool ShapingTool::gesture(const Gesture& gesture) {
 }
 
 bool ShapingTool::take_handle_gesture(const Gesture& gesture) {
-  if (const auto* taken = std::get_if<HandleTaken>(&gesture)) {
+  if (const auto* taken = std::get_if<input::HandleTaken>(&gesture)) {
     begin_pull(taken->handle, taken->at);
     return true;
   }
-  const auto* moved = std::get_if<HandleMoved>(&gesture);
-  const auto* released = std::get_if<HandleReleased>(&gesture);
+  const auto* moved = std::get_if<input::HandleMoved>(&gesture);
+  const auto* released = std::get_if<input::HandleReleased>(&gesture);
   if (moved == nullptr && released == nullptr) return false;
   // While a number is typed the pull waits for it.
   if (!pull_ || pull_->typed || is_typing()) return true;
   pull_to(moved != nullptr ? moved->at : released->at);
   if (released == nullptr) return true;
   if (pull_->axis_known)
-    context_.link.commit_drag();
+    context_.link.drag.commit();
   else
     pull_->released_early = true;
   return true;
@@ -83,9 +87,9 @@ bool ShapingTool::take_handle_gesture(const Gesture& gesture) {
 
 // --- the handle ---
 
-Under ShapingTool::under(const Pixel& pixel) const {
+Under ShapingTool::under(const input::Pixel& pixel) const {
   const std::optional<render::Handle> shown = shown_handle();
-  return shown && !pull_ && !context_.tools.in_mode() ? part_of_handle(aim(context_.view), *shown, pixel) : Under::picture;
+  return shown && !pull_ && !context_.tools.in_mode() ? part_of_handle(toolkit::aim(context_.view), *shown, pixel) : Under::picture;
 }
 
 std::optional<render::Handle> ShapingTool::shown_handle() const {
@@ -98,9 +102,10 @@ std::optional<render::Handle> ShapingTool::shown_handle() const {
     if (pull.axis()) handle.turn = render::Handle::Turn{pull.axis()->point, pull.axis()->direction, pulled_.degrees};
     return handle;
   }
-  const ModelLink& link = context_.link;
-  if (!anchor_ || context_.shown.older || !link.connected() || link.drag() != nullptr || context_.tools.in_mode(this)) return std::nullopt;
-  const stereo::Aim now = aim(context_.view);
+  const link::ModelLink& link = context_.link;
+  if (!anchor_ || context_.shown.older || !link.connection.connected() || link.drag.running() != nullptr || context_.tools.in_mode(this))
+    return std::nullopt;
+  const stereo::Aim now = toolkit::aim(context_.view);
   handle.at = anchor_->at;
   handle.direction = arrow_direction(now, *anchor_);
   if (axis_) {
@@ -125,7 +130,7 @@ void ShapingTool::document_changed() {
   handle_ = Under::lift_handle;
   options_ = for_another_deck(std::move(options_));
   followed_.ask(std::nullopt, 0);
-  if (is_typing()) close_dialog(context_);
+  if (is_typing()) toolkit::close_dialog(context_);
 }
 
 // --- picture and panels ---
@@ -134,7 +139,7 @@ void ShapingTool::add_to_picture(render::Picture& picture) const {
   picture.handle = shown_handle();
   const auto& shown = context_.shown.snapshot;
   if (const ipc::FollowedEdges* edges = picture.handle && shown ? followed_.known(shown->info().generation) : nullptr)
-    picture.followed_edges = lines_of(*edges, *shown, context_.link.drag());
+    picture.followed_edges = lines_of(*edges, *shown, context_.link.drag.running());
 }
 
 std::string ShapingTool::guidance() const {
@@ -144,7 +149,7 @@ std::string ShapingTool::guidance() const {
 }
 
 void ShapingTool::trace_picture() {
-  const stereo::Aim now = aim(context_.view);
+  const stereo::Aim now = toolkit::aim(context_.view);
   std::string text = "handle none";
   if (const auto shown = shown_handle()) {
     const auto foot = stereo::pixel_of(now, shown->at), tip = stereo::pixel_of(now, stereo::handle_tip(now, shown->at, shown->direction));
@@ -176,7 +181,7 @@ void ShapingTool::draw_document_section(PanelLayout&) {
     case Under::turn_handle: facts.degrees = pulled_.degrees; break;
     default: facts.length = pulled_.by.norm(); break;
   }
-  if (const RemoteDrag* drag = context_.link.drag(); drag != nullptr && drag->begun()) facts.nodes = drag->facts().nodes;
+  if (const link::RunningDrag* drag = context_.link.drag.running(); drag != nullptr && drag->begun()) facts.nodes = drag->facts().nodes;
   pull_section(facts);
 }
 

@@ -7,30 +7,40 @@
 #include <string>
 
 #include "kiosk/panels/number_box.h"
+#include "kiosk/toolkit/abilities.h"
+#include "kiosk/toolkit/tool.h"
+#include "kiosk/toolkit/tool_context.h"
 #include "kiosk/tools/shaping/axis_pick.h"
 #include "kiosk/tools/shaping/followed_edges.h"
 #include "kiosk/tools/shaping/handle.h"
 #include "kiosk/tools/shaping/pull_preview.h"
 #include "kiosk/tools/shaping/shaping_commands.h"
 #include "kiosk/tools/shaping/shaping_options.h"
-#include "kiosk/tools/tool.h"
-#include "kiosk/tools/tool_context.h"
 
 namespace prismesh::kiosk::tools::shaping {
 
-std::span<const KeyBinding> keys();
+std::span<const input::KeyBinding> keys();
 
-class ShapingTool final : public Tool {
+class ShapingTool final : public toolkit::Tool,
+                          public toolkit::TakesGestures,
+                          public toolkit::TakesNumbers,
+                          public toolkit::HasHandle,
+                          public toolkit::Drags,
+                          public toolkit::HasMode,
+                          public toolkit::TakesBack,
+                          public toolkit::FollowsView,
+                          public toolkit::TracesPicture,
+                          public toolkit::HasDialogs {
  public:
-  explicit ShapingTool(ToolContext& context)
-      : context_(context), preview_(context.link, context.renderer, context.trace), followed_(context.link) {}
+  explicit ShapingTool(toolkit::ToolContext& context)
+      : context_(context), preview_(context.link.drag, context.renderer, context.trace), followed_(context.link.connection) {}
 
   std::string_view name() const override;
-  void command(std::uint8_t number, const Pointer& pointer) override;
-  Under under(const Pixel& pixel) const override;
-  bool gesture(const Gesture& gesture) override;
-  bool takes_numbers(const Pointer& pointer) const override;
-  bool begin_number(const std::string& text, const Pointer& pointer) override;
+  void command(std::uint8_t number, const toolkit::Pointer& pointer) override;
+  input::Under under(const input::Pixel& pixel) const override;
+  bool gesture(const input::Gesture& gesture) override;
+  bool takes_numbers(const toolkit::Pointer& pointer) const override;
+  bool begin_number(const std::string& text, const toolkit::Pointer& pointer) override;
   bool in_mode() const override { return axis_pick_.active(); }
   bool leave_mode() override;
   bool take_back() override;
@@ -40,14 +50,14 @@ class ShapingTool final : public Tool {
   Result<void> follow() override;
   void model_changed() override;
   void document_changed() override;
-  void view_moved(const Pointer& pointer) override;
+  void view_moved(const toolkit::Pointer& pointer) override;
   void add_to_picture(render::Picture& picture) const override;
   std::string guidance() const override;
   void trace_picture() override;
   std::string_view panel_name() const override { return "shaping"; }
-  void draw_left(PanelLayout& layout) override;
-  void draw_document_section(PanelLayout& layout) override;
-  void draw_dialog(int kind, bool opened, PanelLayout& layout) override;
+  void draw_left(panels::PanelLayout& layout) override;
+  void draw_document_section(panels::PanelLayout& layout) override;
+  void draw_dialog(int kind, bool opened, panels::PanelLayout& layout) override;
 
  private:
   /// What the number that is being typed is for.
@@ -61,7 +71,7 @@ class ShapingTool final : public Tool {
   /// A pull under way.
   struct ActivePull {
     HandlePull pull;
-    Pixel pointer = Pixel::Zero();
+    input::Pixel pointer = input::Pixel::Zero();
     bool axis_known = false;      ///< the server has told the normal: only then it understands a distance
     bool released_early = false;  ///< before that
     std::optional<Pull> typed{};  ///< so far, whatever the pointer says; of a lift: along the arrow
@@ -71,24 +81,24 @@ class ShapingTool final : public Tool {
   bool is_typing() const { return context_.open.dialog.owner == this; }
 
   // --- pulls ---
-  void begin_pull(Under handle, const Pixel& at);
-  void pull_to(const Pixel& pixel);
+  void begin_pull(input::Under handle, const input::Pixel& at);
+  void pull_to(const input::Pixel& pixel);
   void send_typed();
-  void take_axis(const RemoteDrag& drag);
+  void take_axis(const link::RunningDrag& drag);
   void ask_followed_edges();
-  bool take_handle_gesture(const Gesture& gesture);
+  bool take_handle_gesture(const input::Gesture& gesture);
 
   // --- axes ---
   void set_axis(const std::optional<Axis>& axis, const std::string& what);
   void pick_two_nodes(TwoNodes purpose);
-  void click_node(const Pixel& at);
-  std::optional<EdgeAxis> edge_under(const Pointer& pointer) const;
-  void axis_from_edge(const Pointer& pointer);
+  void click_node(const input::Pixel& at);
+  std::optional<EdgeAxis> edge_under(const toolkit::Pointer& pointer) const;
+  void axis_from_edge(const toolkit::Pointer& pointer);
   void axis_from_deck(DeckAxis axis);
 
   // --- the direction of the falloff ---
   void set_falloff(const FalloffDirection& along);
-  void falloff_from_edge(const Pointer& pointer);
+  void falloff_from_edge(const toolkit::Pointer& pointer);
 
   // --- numbers and options ---
   void type_for(Typing::For what, const std::optional<double>& now);
@@ -99,9 +109,9 @@ class ShapingTool final : public Tool {
   void next_handle();
   void change_option(ShapingCommand command);
 
-  ToolContext& context_;
+  toolkit::ToolContext& context_;
   ShapingOptions options_;
-  Under handle_ = Under::lift_handle;  ///< the part of the handle that numbers are typed for
+  input::Under handle_ = input::Under::lift_handle;  ///< the part of the handle that numbers are typed for
   AxisPick axis_pick_;
   TwoNodes picks_ = TwoNodes::axis;
   std::optional<Axis> axis_;

@@ -2,13 +2,15 @@
 
 #include <vector>
 
+#include "kiosk/input/typed_numbers.h"
 #include "kiosk/tools/shaping/falloff_direction.h"
-#include "kiosk/tools/typed_numbers.h"
 
 namespace prismesh::kiosk::tools::shaping {
 
+using input::Under;
+
 Result<Pull> typed_displacement(Under handle, std::string_view text, const Pull& pulled) {
-  const Result<std::vector<double>> numbers = parse_numbers(text);
+  const Result<std::vector<double>> numbers = input::parse_numbers(text);
   if (!numbers) return fail(numbers.error());
   const std::vector<double>& n = *numbers;
   Pull pull;

@@ -6,7 +6,7 @@ namespace prismesh::kiosk::tools::view {
 namespace {
 
 /// What is told to other kiosks doesn't depend on the number of views here.
-double size_of(const PictureView& view) { return view.two_views ? kTwoViewsSize : 1; }
+double size_of(const toolkit::PictureView& view) { return view.two_views ? toolkit::kTwoViewsSize : 1; }
 
 }  // namespace
 
@@ -21,11 +21,11 @@ void SharedView::share() {
   camera.stands_mm = {view.pan_mm.x() / size, view.pan_mm.y() / size, view.before_mm};
   if (shared_ == camera) return;
   // The first view of a kiosk that has just started doesn't move the others.
-  if (std::exchange(shared_, camera)) context_.link.share_camera(camera);
+  if (std::exchange(shared_, camera)) context_.link.cameras.share(camera);
 }
 
 bool SharedView::take() {
-  const std::optional<ipc::Camera> heard = context_.link.take_camera();
+  const std::optional<ipc::Camera> heard = context_.link.cameras.take();
   if (!heard || !context_.options.follows_others || heard->rotation.size() != 4 || !(heard->mm_per_unit > 0)) return false;
   const Eigen::Quaterniond rotation(heard->rotation[0], heard->rotation[1], heard->rotation[2], heard->rotation[3]);
   if (!(rotation.norm() > 0.5 && rotation.norm() < 2)) return false;

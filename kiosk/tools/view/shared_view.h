@@ -3,13 +3,13 @@
 
 #include <optional>
 
-#include "kiosk/tools/tool_context.h"
+#include "kiosk/toolkit/tool_context.h"
 
 namespace prismesh::kiosk::tools::view {
 
 class SharedView {
  public:
-  explicit SharedView(ToolContext& context) : context_(context) {}
+  explicit SharedView(toolkit::ToolContext& context) : context_(context) {}
 
   /// Tells the other kiosks the view, if it has changed.
   void share();
@@ -17,7 +17,7 @@ class SharedView {
   bool take();
 
  private:
-  ToolContext& context_;
+  toolkit::ToolContext& context_;
   std::optional<ipc::Camera> shared_;  ///< told or heard last
 };
 

@@ -3,13 +3,16 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "kiosk/input/key_table.h"
 #include "kiosk/panels/text.h"
 #include "kiosk/panels/widgets.h"
-#include "kiosk/tools/key_table.h"
 #include "kiosk/tools/view/view_keys.h"
 
 namespace prismesh::kiosk::tools::view {
 namespace {
+
+using panels::PanelLayout;
+using toolkit::EyesFacts;
 
 using panels::draw_signal;
 using panels::fact;
@@ -69,7 +72,7 @@ void picture_section(const std::string& colours, const std::string& profile, Pan
   ImGui::TextDisabled("colour by");
   ImGui::SameLine();
   if (ImGui::SmallButton(colours.c_str())) layout.ask(command_of(ViewCommand::colour_mode));
-  panels::hint(binding_of(kKeys, command_of(ViewCommand::colour_mode)));
+  panels::hint(input::binding_of(kKeys, command_of(ViewCommand::colour_mode)));
   ImGui::TextDisabled("display");
   ImGui::SameLine();
   if (ImGui::SmallButton(profile.c_str())) layout.ask(command_of(ViewCommand::next_profile));

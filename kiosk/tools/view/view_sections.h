@@ -4,13 +4,13 @@
 #include <optional>
 #include <string>
 
-#include "kiosk/tools/eyes_facts.h"
-#include "kiosk/tools/panel_layout.h"
+#include "kiosk/panels/panel_layout.h"
+#include "kiosk/toolkit/eyes_facts.h"
 
 namespace prismesh::kiosk::tools::view {
 
 /// Lays out what the model is coloured by, in a word, and the display profile (inside Gui::layout).
-void picture_section(const std::string& colours, const std::string& profile, PanelLayout& layout);
+void picture_section(const std::string& colours, const std::string& profile, panels::PanelLayout& layout);
 
 /// How much depth the picture has.
 struct DepthFacts {
@@ -21,10 +21,10 @@ struct DepthFacts {
 
 /// Whatever of it there is: eyes if they are followed, depth if the picture is in stereo.
 struct StereoFacts {
-  std::optional<EyesFacts> eyes;
+  std::optional<toolkit::EyesFacts> eyes;
   std::optional<DepthFacts> depth;
 };
-void stereo_sections(const StereoFacts& facts, PanelLayout& layout);
+void stereo_sections(const StereoFacts& facts, panels::PanelLayout& layout);
 /// Their height in pixels in a panel of that inner width.
 float stereo_height(const StereoFacts& facts, float width);
 

@@ -4,23 +4,30 @@
 #include <cmath>
 #include <numbers>
 
-#include "kiosk/tools/edits.h"
-#include "kiosk/tools/picking.h"
-#include "kiosk/tools/tool_set.h"
+#include "kiosk/toolkit/edits.h"
+#include "kiosk/toolkit/picking.h"
+#include "kiosk/toolkit/tool_set.h"
 #include "kiosk/tools/view/view_keys.h"
 
 namespace prismesh::kiosk::tools::view {
 namespace {
 
+using input::Orbited;
+using input::Panned;
+using input::Zoomed;
+using panels::PanelLayout;
+using toolkit::DepthFit;
+using toolkit::PictureView;
+
 constexpr double kZoomPerStep = 1.15;
 
 }  // namespace
 
-std::span<const KeyBinding> keys() { return kKeys; }
+std::span<const input::KeyBinding> keys() { return kKeys; }
 
 std::string_view ViewTool::name() const { return kName; }
 
-void ViewTool::command(std::uint8_t number, const Pointer&) {
+void ViewTool::command(std::uint8_t number, const toolkit::Pointer&) {
   DepthFit& depth = context_.view.depth;
   switch (static_cast<ViewCommand>(number)) {
     case ViewCommand::fit: fit(); break;
@@ -34,7 +41,7 @@ void ViewTool::command(std::uint8_t number, const Pointer&) {
     case ViewCommand::colour_mode: next_colours(); break;
     case ViewCommand::shadows: context_.view.shadows = !context_.view.shadows; break;
     case ViewCommand::next_profile: next_profile(); break;
-    case ViewCommand::selection_to_plane: bring_selection(context_); break;
+    case ViewCommand::selection_to_plane: toolkit::bring_selection(context_); break;
     case ViewCommand::keep_selection_in_plane: keep_selection(!depth.keeps_selection()); break;
     case ViewCommand::more_depth: depth.change_percent(1); break;
     case ViewCommand::less_depth: depth.change_percent(-1); break;
@@ -45,7 +52,7 @@ void ViewTool::command(std::uint8_t number, const Pointer&) {
 
 // --- gestures ---
 
-bool ViewTool::gesture(const Gesture& gesture) {
+bool ViewTool::gesture(const input::Gesture& gesture) {
   if (const auto* orbited = std::get_if<Orbited>(&gesture))
     orbit(*orbited);
   else if (const auto* panned = std::get_if<Panned>(&gesture))
@@ -62,7 +69,7 @@ void ViewTool::orbit(const Orbited& orbit) {
   if (orbit_from_ != orbit.from) {
     // The model turns about what was under the pointer when the drag began.
     orbit_from_ = orbit.from;
-    const auto node = shown_node_at(context_, in_picked_view(view, orbit.from));
+    const auto node = toolkit::shown_node_at(context_, toolkit::in_picked_view(view, orbit.from));
     if (node) view.view = stereo::with_pivot(view.view, context_.shown.snapshot->position(node->value));
   }
   const double radians_per_pixel = std::numbers::pi / std::max(view.size.height, 1);
@@ -72,14 +79,14 @@ void ViewTool::orbit(const Orbited& orbit) {
 
 void ViewTool::pan(const Panned& pan) {
   PictureView& view = context_.view;
-  view.view = stereo::pan(view.view, Eigen::Vector2d(pan.dx, -pan.dy) * aim(view).mm_per_pixel());
+  view.view = stereo::pan(view.view, Eigen::Vector2d(pan.dx, -pan.dy) * toolkit::aim(view).mm_per_pixel());
   context_.tools.view_moved(pan.at);
 }
 
 void ViewTool::zoom(const Zoomed& zoom) {
   PictureView& view = context_.view;
-  Eigen::Vector2d place = stereo::mm_of_pixel(aim(view), zoom.at);
-  if (view.two_views) place.x() -= (zoom.at.x() > 0.5 * view.size.width ? 1 : -1) * pane_shift_mm(view);
+  Eigen::Vector2d place = stereo::mm_of_pixel(toolkit::aim(view), zoom.at);
+  if (view.two_views) place.x() -= (zoom.at.x() > 0.5 * view.size.width ? 1 : -1) * toolkit::pane_shift_mm(view);
   view.view = stereo::zoom(view.view, std::pow(kZoomPerStep, zoom.steps), place);
   context_.tools.view_moved();
 }
@@ -98,7 +105,7 @@ void ViewTool::fit() {
   free.x() *= std::max(0.2, 1 - view.covered_width / std::max(view.size.width, 1));
   if (view.two_views) free.x() *= 0.5;
   view.view = context_.renderer.fitted(view.view, free, view.seen.between_eyes_mm.z());
-  if (view.depth.keeps_selection()) bring_selection(context_);
+  if (view.depth.keeps_selection()) toolkit::bring_selection(context_);
   context_.tools.view_moved();
   ++context_.changes;
 }
@@ -121,7 +128,7 @@ void ViewTool::next_profile() {
 
 void ViewTool::keep_selection(bool keep) {
   context_.view.depth.keep_selection(keep);
-  if (keep) bring_selection(context_);
+  if (keep) toolkit::bring_selection(context_);
 }
 
 // --- following ---

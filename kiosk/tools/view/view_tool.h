@@ -7,33 +7,34 @@
 #include <string>
 #include <string_view>
 
-#include "kiosk/tools/tool.h"
-#include "kiosk/tools/tool_context.h"
+#include "kiosk/toolkit/abilities.h"
+#include "kiosk/toolkit/tool.h"
+#include "kiosk/toolkit/tool_context.h"
 #include "kiosk/tools/view/shared_view.h"
 #include "kiosk/tools/view/view_sections.h"
 
 namespace prismesh::kiosk::tools::view {
 
-std::span<const KeyBinding> keys();
+std::span<const input::KeyBinding> keys();
 
-class ViewTool final : public Tool {
+class ViewTool final : public toolkit::Tool, public toolkit::TakesGestures, public toolkit::MovesView, public toolkit::HasStatus {
  public:
-  explicit ViewTool(ToolContext& context) : context_(context), shared_(context) {}
+  explicit ViewTool(toolkit::ToolContext& context) : context_(context), shared_(context) {}
 
   std::string_view name() const override;
-  void command(std::uint8_t number, const Pointer& pointer) override;
-  bool gesture(const Gesture& gesture) override;
+  void command(std::uint8_t number, const toolkit::Pointer& pointer) override;
+  bool gesture(const input::Gesture& gesture) override;
   Result<void> prepare() override;
   void document_changed() override { fit(); }
   void look(std::int64_t now_ns) override;
-  void draw_document_section(PanelLayout& layout) override;
-  void draw_status(PanelLayout& layout) override;
+  void draw_document_section(panels::PanelLayout& layout) override;
+  void draw_status(panels::PanelLayout& layout) override;
   double status_height(double width) const override;
 
  private:
-  void orbit(const Orbited& orbit);
-  void pan(const Panned& pan);
-  void zoom(const Zoomed& zoom);
+  void orbit(const input::Orbited& orbit);
+  void pan(const input::Panned& pan);
+  void zoom(const input::Zoomed& zoom);
   void look_from(std::string_view side);
   void fit();
   void next_colours();
@@ -41,9 +42,9 @@ class ViewTool final : public Tool {
   void keep_selection(bool keep);
   StereoFacts stereo_facts() const;
 
-  ToolContext& context_;
+  toolkit::ToolContext& context_;
   SharedView shared_;
-  std::optional<Pixel> orbit_from_;  ///< where the drag began that turned the view last
+  std::optional<input::Pixel> orbit_from_;  ///< where the drag began that turned the view last
 };
 
 }  // namespace prismesh::kiosk::tools::view

@@ -1,0 +1,28 @@
+// What a panel is laid out into, and what the user asked for meanwhile.
+#pragma once
+
+#include <functional>
+#include <utility>
+#include <vector>
+
+#include "kiosk/display/window.h"
+#include "kiosk/input/command.h"
+
+namespace prismesh::kiosk::panels {
+
+struct PanelLayout {
+  display::PixelSize picture;
+  /// Carries out a command; called after the layout.
+  std::function<void(const input::Command&)> run_command{};
+  /// To be called in this order after the layout.
+  std::vector<std::function<void()>> actions{};
+  double top = 0;     ///< pixels: what lies over the picture stands below it
+  double bottom = 0;  ///< pixels: what lies over the picture ends above it
+
+  void ask(std::function<void()> action) { actions.push_back(std::move(action)); }
+  void ask(const input::Command& command) {
+    actions.emplace_back([run = run_command, command] { run(command); });
+  }
+};
+
+}  // namespace prismesh::kiosk::panels

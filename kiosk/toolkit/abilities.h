@@ -1,0 +1,163 @@
+// What some tools can do beside what every tool is. A tool also derives from its abilities; only tools with an ability are asked for it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "kiosk/input/gestures.h"
+#include "kiosk/panels/panel_layout.h"
+#include "kiosk/panels/question.h"
+#include "kiosk/toolkit/pointer.h"
+
+namespace prismesh::kiosk::toolkit {
+
+class Ability {
+ public:
+  virtual ~Ability() = default;
+};
+
+// --- the hand ---
+
+class TakesGestures : public Ability {
+ public:
+  /// True: the gesture was for this tool, and no other one gets it.
+  virtual bool gesture(const input::Gesture& gesture) = 0;
+};
+
+class TakesNumbers : public Ability {
+ public:
+  /// Whether a typed digit begins a number for this tool.
+  virtual bool takes_numbers(const Pointer& pointer) const = 0;
+  /// `text` has been typed so far; true: the tool takes it.
+  virtual bool begin_number(const std::string& text, const Pointer& pointer) = 0;
+};
+
+/// Has a handle in the picture that pulls the model.
+class HasHandle : public Ability {
+ public:
+  /// Which part of the handle a pixel is on; `picture`: none.
+  virtual input::Under under(const input::Pixel& pixel) const = 0;
+  /// The model is being pulled: no other preview or state may be shown.
+  virtual bool pulling() const = 0;
+};
+
+class Drags : public Ability {
+ public:
+  /// Something follows the pointer.
+  virtual bool dragging() const = 0;
+  /// Ends that without effect.
+  virtual void cancel_gesture() = 0;
+};
+
+// --- what Esc ends ---
+
+/// In a mode a tool gets gestures before the tools without one.
+class HasMode : public Ability {
+ public:
+  virtual bool in_mode() const = 0;
+  /// Ends the mode; false: there was none.
+  virtual bool leave_mode() = 0;
+};
+
+class TakesBack : public Ability {
+ public:
+  /// Gives up something that stays on, such as an axis; false: nothing is on.
+  virtual bool take_back() = 0;
+};
+
+class Clears : public Ability {
+ public:
+  /// There was nothing else to give up: takes away what is selected.
+  virtual void clear() = 0;
+};
+
+// --- the model and the view ---
+
+class GuardsEdits : public Ability {
+ public:
+  /// False: nothing can be edited now, and the tool has told the user why.
+  virtual bool allow_edit() = 0;
+  /// An edit is about to be sent.
+  virtual void edit_begins() = 0;
+};
+
+class Previews : public Ability {
+ public:
+  /// Ends a preview of the tool on the model, as another tool begins its own.
+  virtual void leave_preview() = 0;
+};
+
+class MovesView : public Ability {
+ public:
+  /// Moves the view on before the next picture.
+  virtual void look(std::int64_t now_ns) = 0;
+};
+
+class FollowsView : public Ability {
+ public:
+  /// The view has changed, with the pointer there if a gesture did it.
+  virtual void view_moved(const Pointer& pointer) = 0;
+};
+
+// --- the picture ---
+
+class ColoursModel : public Ability {
+ public:
+  /// What the tool colours the model by, in a word; empty: nothing.
+  virtual std::string colours() const = 0;
+  /// Takes these colours away; false: there were none.
+  virtual bool leave_colours() = 0;
+};
+
+class HidesGlyphs : public Ability {
+ public:
+  /// Which quality glyphs the tool hides, in words; empty: none.
+  virtual std::string glyphs_hidden() const = 0;
+};
+
+class TracesPicture : public Ability {
+ public:
+  /// Writes what a watching program needs of the picture, where it has changed.
+  virtual void trace_picture() = 0;
+};
+
+// --- panels; drawn inside Gui::layout ---
+
+class HasStatus : public Ability {
+ public:
+  /// A section of the panel at the right.
+  virtual void draw_status(panels::PanelLayout& layout) = 0;
+  /// Its height in pixels beyond the panel's own.
+  virtual double status_height(double /*width*/) const { return 0; }
+};
+
+/// Has the list that fills the rest of the panel at the right.
+class HasList : public Ability {
+ public:
+  virtual void draw_list(panels::PanelLayout& layout) = 0;
+  virtual std::size_t list_rows() const = 0;
+};
+
+class DrawsOverPicture : public Ability {
+ public:
+  /// What lies over the picture: moves the layout's `top` and `bottom` by what it takes.
+  virtual void draw_over_picture(panels::PanelLayout& layout) = 0;
+};
+
+class HasDialogs : public Ability {
+ public:
+  /// The dialog of this kind. `opened`: it wasn't there the last time.
+  virtual void draw_dialog(int kind, bool opened, panels::PanelLayout& layout) = 0;
+  /// Whether that dialog hides the panels at the sides.
+  virtual bool dialog_covers(int /*kind*/) const { return false; }
+};
+
+class AsksQuestions : public Ability {
+ public:
+  /// A question that must be answered first; null: none.
+  virtual const panels::Question* question() const = 0;
+  virtual void reply(panels::Reply reply) = 0;
+};
+
+}  // namespace prismesh::kiosk::toolkit

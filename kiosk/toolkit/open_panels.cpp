@@ -1,0 +1,34 @@
+#include "kiosk/toolkit/open_panels.h"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "kiosk/toolkit/tool_set.h"
+
+namespace prismesh::kiosk::toolkit {
+
+void show_left(ToolContext& context, Tool* tool) {
+  context.open.left = tool;
+  context.trace.line("panel " + (tool != nullptr ? std::string(tool->panel_name()) : "document"));
+  context.tools.panel_changed();
+  context.follow_soon = true;
+}
+
+void toggle_left(ToolContext& context, Tool* tool) { show_left(context, context.open.left == tool ? nullptr : tool); }
+
+void open_dialog(ToolContext& context, HasDialogs* owner, int kind) {
+  context.open.dialog = {owner, kind};
+  set_cover(context, Cover::none);
+}
+
+void set_cover(ToolContext& context, Cover cover) {
+  if (cover == context.open.cover) return;
+  if (std::exchange(context.open.cover, cover) == Cover::warnings) context.trace.line("warnings closed");
+  if (cover != Cover::warnings) return;
+  context.notices.read_warnings();
+  const std::size_t errors = notices::error_count(context.link.document.warnings());
+  context.trace.line(fmt::format("warnings shown errors {} warnings {}", errors, context.link.document.warnings().size() - errors));
+}
+
+}  // namespace prismesh::kiosk::toolkit

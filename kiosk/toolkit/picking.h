@@ -1,0 +1,38 @@
+// Where the pointer aims and what it hits, in a picture of one or two views.
+#pragma once
+
+#include <optional>
+
+#include "kiosk/input/gestures.h"
+#include "kiosk/toolkit/tool_context.h"
+
+namespace prismesh::kiosk::toolkit {
+
+/// View, eyes, display and colours, without what stands in the picture.
+render::Picture plain_picture(const PictureView& view);
+
+/// How far each of two views stands from the middle, as a share of the picture's width: in the middle of what panels leave of its half.
+double pane_shift(const PictureView& view);
+/// `pane_shift` in mm on the screen.
+double pane_shift_mm(const PictureView& view);
+
+/// Aims into the view that things are picked in: the right one of two.
+stereo::Aim aim(const PictureView& view);
+/// Whether a pixel is in the left one of two views, which is only shown.
+bool is_beside(const PictureView& view, const input::Pixel& pixel);
+/// The same place in the view that things are picked in.
+input::Pixel in_picked_view(const PictureView& view, const input::Pixel& pixel);
+
+/// Whether something can be picked at a pixel.
+bool is_pickable(const ToolContext& context, const input::Pixel& pixel);
+/// The visible node nearest to a pixel; nothing within reach: none. May be newer than the shown snapshot.
+std::optional<mesh::NodeIndex> node_at(const ToolContext& context, const input::Pixel& pixel);
+/// The same, if the shown snapshot has it.
+std::optional<mesh::NodeIndex> shown_node_at(const ToolContext& context, const input::Pixel& pixel);
+/// The shell under a pixel, where something can be picked.
+std::optional<mesh::ShellIndex> shell_at(const ToolContext& context, const std::optional<input::Pixel>& pixel);
+
+/// The shell with an id; nothing if the shown snapshot hasn't got it. Costs a pass over the ids.
+std::optional<mesh::ShellIndex> shell_with_id(const ToolContext& context, std::int64_t id);
+
+}  // namespace prismesh::kiosk::toolkit

@@ -1,0 +1,77 @@
+// What all tools share: the services that they call, and plain data that more than one of them reads or writes.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "base/clock.h"
+#include "kiosk/link/model_link.h"
+#include "kiosk/notices/notices.h"
+#include "kiosk/notices/trace.h"
+#include "kiosk/render/renderer.h"
+#include "kiosk/toolkit/picture_view.h"
+#include "mesh/document/edit.h"
+
+namespace prismesh::kiosk::toolkit {
+
+class HasDialogs;
+class Tool;
+class ToolSet;
+
+/// The document as it is shown.
+struct ShownModel {
+  std::shared_ptr<const ipc::SnapshotView> snapshot;  ///< the newest state; null: no document is open
+  std::uint64_t document_number = 0;                  ///< FollowedDocument::number of it
+  bool older = false;                                 ///< the renderer's model is an older state: nothing in it can be picked
+};
+
+/// The selection as the next gesture meets it.
+struct SelectionFocus {
+  std::optional<mesh::NodeIndex> last_clicked;
+  std::optional<mesh::document::SelectRegion> last_region;  ///< the last edit, if it selected a region
+  std::optional<mesh::Vec3> centre;                         ///< of the selected nodes
+  double crease_angle = 30;                                 ///< degrees: sharper edges are creases
+};
+
+/// What covers the side panels.
+enum class Cover : std::uint8_t { none, menu, help, warnings };
+
+struct OpenPanels {
+  /// A box that is typed into. Its owner may have several kinds.
+  struct Dialog {
+    HasDialogs* owner = nullptr;  ///< null: no dialog is open
+    int kind = 0;
+    bool operator==(const Dialog&) const = default;
+  };
+  Tool* left = nullptr;  ///< whose panel is open at the left; null: the document's
+  Dialog dialog;
+  Cover cover = Cover::none;
+};
+
+struct ToolOptions {
+  std::filesystem::path expressions{};  ///< file of the entered expressions; empty: none
+  bool follows_others = false;          ///< moves together with other kiosks that do
+};
+
+struct ToolContext {
+  link::ModelLink& link;
+  render::Renderer& renderer;
+  Clock& clock;
+  notices::Trace trace;
+  notices::Notices& notices;
+  ToolSet& tools;
+  ToolOptions options{};
+
+  PictureView view{};
+  ShownModel shown{};
+  SelectionFocus selection{};
+  OpenPanels open{};
+  std::size_t glyphs_left_out = 0;  ///< glyphs that the last picture had no room for
+  std::uint64_t changes = 0;        ///< counts up with each change of the picture or the panels
+  bool quits = false;               ///< the window closes
+  bool follow_soon = false;         ///< follow at the next turn, even if the server says nothing
+};
+
+}  // namespace prismesh::kiosk::toolkit

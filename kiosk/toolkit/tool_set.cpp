@@ -1,0 +1,100 @@
+#include "kiosk/toolkit/tool_set.h"
+
+#include <algorithm>
+
+namespace prismesh::kiosk::toolkit {
+
+using input::Under;
+
+void ToolSet::add(std::unique_ptr<Tool> tool) {
+  abilities_.add(*tool);
+  moded_.push_back({tool.get(), dynamic_cast<TakesGestures*>(tool.get()), dynamic_cast<HasMode*>(tool.get())});
+  all_.push_back(std::move(tool));
+}
+
+bool ToolSet::command(const input::Command& command, const Pointer& pointer) {
+  const auto owner = std::find_if(all_.begin(), all_.end(), [&](const auto& tool) { return tool->name() == command.owner; });
+  if (owner == all_.end()) return false;
+  (*owner)->command(command.number, pointer);
+  return true;
+}
+
+void ToolSet::gesture(const input::Gesture& gesture) {
+  for (const bool mode : {true, false})
+    for (const Moded& each : moded_)
+      if (each.gestures != nullptr && each.in_mode() == mode && each.gestures->gesture(gesture)) return;
+}
+
+Under ToolSet::under(const input::Pixel& pixel) const {
+  for (const HasHandle* tool : with<HasHandle>())
+    if (const Under under = tool->under(pixel); under != Under::picture) return under;
+  return Under::picture;
+}
+
+AsksQuestions* ToolSet::asking() const {
+  const auto& able = with<AsksQuestions>();
+  const auto asking = std::find_if(able.begin(), able.end(), [](const AsksQuestions* tool) { return tool->question() != nullptr; });
+  return asking == able.end() ? nullptr : *asking;
+}
+
+bool ToolSet::in_mode(const HasMode* but) const {
+  return std::ranges::any_of(with<HasMode>(), [&](const HasMode* tool) { return tool != but && tool->in_mode(); });
+}
+
+bool ToolSet::leave_mode() { return std::ranges::any_of(with<HasMode>(), &HasMode::leave_mode); }
+
+bool ToolSet::take_back() { return std::ranges::any_of(with<TakesBack>(), &TakesBack::take_back); }
+
+void ToolSet::clear() {
+  for (Clears* tool : with<Clears>()) tool->clear();
+}
+
+bool ToolSet::dragging() const { return std::ranges::any_of(with<Drags>(), &Drags::dragging); }
+
+void ToolSet::cancel_gesture() {
+  for (Drags* tool : with<Drags>()) tool->cancel_gesture();
+}
+
+bool ToolSet::pulling() const { return std::ranges::any_of(with<HasHandle>(), &HasHandle::pulling); }
+
+void ToolSet::leave_previews() {
+  for (Previews* tool : with<Previews>()) tool->leave_preview();
+}
+
+bool ToolSet::allow_edit() { return std::ranges::all_of(with<GuardsEdits>(), &GuardsEdits::allow_edit); }
+
+void ToolSet::edit_begins() {
+  for (GuardsEdits* tool : with<GuardsEdits>()) tool->edit_begins();
+}
+
+void ToolSet::view_moved(const Pointer& pointer) {
+  for (FollowsView* tool : with<FollowsView>()) tool->view_moved(pointer);
+}
+
+void ToolSet::panel_changed() {
+  for (const auto& tool : all_) tool->panel_changed();
+}
+
+std::string ToolSet::colours() const {
+  for (const ColoursModel* tool : with<ColoursModel>())
+    if (std::string colours = tool->colours(); !colours.empty()) return colours;
+  return {};
+}
+
+bool ToolSet::leave_colours() { return std::ranges::any_of(with<ColoursModel>(), &ColoursModel::leave_colours); }
+
+std::string ToolSet::glyphs_hidden() const {
+  for (const HidesGlyphs* tool : with<HidesGlyphs>())
+    if (std::string hidden = tool->glyphs_hidden(); !hidden.empty()) return hidden;
+  return {};
+}
+
+std::string ToolSet::guidance() const {
+  for (const bool mode : {true, false})
+    for (const Moded& each : moded_)
+      if (each.in_mode() == mode)
+        if (std::string guidance = each.tool->guidance(); !guidance.empty()) return guidance;
+  return {};
+}
+
+}  // namespace prismesh::kiosk::toolkit

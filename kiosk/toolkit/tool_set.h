@@ -1,0 +1,69 @@
+// All tools of the kiosk, and what one of them or the editor asks of all.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "kiosk/toolkit/abilities.h"
+#include "kiosk/toolkit/ability_lists.h"
+#include "kiosk/toolkit/tool.h"
+
+namespace prismesh::kiosk::toolkit {
+
+class ToolSet {
+ public:
+  using All = std::vector<std::unique_ptr<Tool>>;
+  void add(std::unique_ptr<Tool> tool);
+  const All& all() const { return all_; }
+  /// The tools with an ability, in the order of all.
+  template <class Ability>
+  const std::vector<Ability*>& with() const {
+    return abilities_.with<Ability>();
+  }
+
+  /// False: no tool has this command.
+  bool command(const input::Command& command, const Pointer& pointer);
+  /// Offers a gesture: first to the tools in a mode.
+  void gesture(const input::Gesture& gesture);
+  input::Under under(const input::Pixel& pixel) const;
+  /// The tool that asks a question; null: none does.
+  AsksQuestions* asking() const;
+
+  /// A tool is in a mode; `but`: that tool isn't counted.
+  bool in_mode(const HasMode* but = nullptr) const;
+  bool leave_mode();
+  bool take_back();
+  void clear();
+  bool dragging() const;
+  void cancel_gesture();
+  bool pulling() const;
+  void leave_previews();
+  bool allow_edit();
+  void edit_begins();
+  void view_moved(const Pointer& pointer = {});
+  void panel_changed();
+
+  std::string colours() const;
+  bool leave_colours();
+  std::string glyphs_hidden() const;
+  /// Of the tools in a mode first.
+  std::string guidance() const;
+
+ private:
+  /// A tool, with the abilities that its mode gives priority to.
+  struct Moded {
+    Tool* tool = nullptr;
+    TakesGestures* gestures = nullptr;  ///< null: it takes none
+    HasMode* mode = nullptr;            ///< null: it has none
+    bool in_mode() const { return mode != nullptr && mode->in_mode(); }
+  };
+
+  All all_;
+  std::vector<Moded> moded_;  ///< all of them
+  AbilityLists<TakesNumbers, HasHandle, Drags, HasMode, TakesBack, Clears, GuardsEdits, Previews, MovesView, FollowsView, ColoursModel,
+               HidesGlyphs, TracesPicture, HasStatus, HasList, DrawsOverPicture, HasDialogs, AsksQuestions>
+      abilities_;
+};
+
+}  // namespace prismesh::kiosk::toolkit
