@@ -24,7 +24,7 @@ RemoteDrag::RemoteDrag(Connection& connection, FollowedDocument& document, LinkN
 }
 
 void RemoteDrag::begin(mesh::document::Edit edit) {
-  drag_.emplace();
+  drag_ = Drag{};
   connection_.ask(ipc::BeginDrag{std::move(edit)}, [this](const ipc::Answer& answer) { began(answer); });
   if (!connection_.connected()) drag_.reset();
 }
