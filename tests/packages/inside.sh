@@ -34,6 +34,7 @@ apt() { apt-get --yes -o Dpkg::Options::=--force-confdef -o Dpkg::Options::=--fo
 installed() { dpkg-query -W -f '${db:Status-Abbrev}${Version} ' prismesh prismesh-station 2>&1; }
 services="prismesh-modeld prismesh-deviced prismesh-kiosk"
 all_active() { for each in $services; do [ "$(systemctl is-active "$each")" = active ] || return 1; done; }
+starts() { for each in $services; do echo "$each $(journalctl --no-pager --quiet _PID=1 --unit "$each" | grep -c ' Started ')"; done; }
 pids() { for each in $services; do systemctl show -P MainPID "$each"; done; }
 as_engineer() { runuser -u engineer -- "$@"; }
 session() { as_engineer timeout 30 prismesh session --runtime-dir $run "$@"; }
@@ -85,7 +86,7 @@ as_engineer prismesh sample --elements 2000 -o /home/engineer/own.k >/dev/null
 as_engineer cp /home/engineer/own.k /var/lib/prismesh/models/rail.k
 as_engineer chmod g+w /var/lib/prismesh/models/rail.k
 systemctl restart prismesh.target
-took=$(until_ms 30000 all_active) && ok "with a picture the target is up after $took ms" || { bad "the target isn't up"; systemctl --no-pager status $services; }
+check "the target is up, with a picture" until_ms 30000 all_active
 check "a picture of a deck is drawn" as_engineer prismesh render /home/engineer/own.k -o /home/engineer/own.png --size 320x240
 check "a deck is opened" session open /var/lib/prismesh/models/rail.k
 check "a patch is selected" session edit '{"edit":"select","expr":"5000001-5000040"}'
@@ -102,6 +103,7 @@ done
 state >/tmp/before
 work_of_users >/tmp/work_before
 pids >/tmp/pids_before
+starts >/tmp/starts_before
 sha256sum /etc/prismesh/*.toml >/tmp/settings
 (
   asked=0
@@ -118,6 +120,7 @@ touch /tmp/upgraded
 wait $asking
 check "dpkg calls them upgraded" is "$(installed)" "ii $higher ii $higher "
 check "each service was started again" bash -c 'for each in $(cat /tmp/pids_before); do [ ! -d /proc/$each ] || { echo "process $each still runs"; exit 1; }; done'
+check "and once only" is "$(starts)" "$(while read -r each count; do echo "$each $((count + 1))"; done </tmp/starts_before)"
 check "none of $(cat /tmp/asked_times) requests meanwhile was refused" bash -c '[ ! -s /tmp/refused ] || { sort /tmp/refused | uniq -c; exit 1; }'
 check "the document is as it was" same_state
 check "files of users are as they were" bash -c "$(declare -f work_of_users)"'; diff /tmp/work_before <(work_of_users)'

@@ -116,8 +116,8 @@ for each in "${built[@]}"; do cp "$each" "$root/root/built/$(basename "$each" | 
 cp "$work"/new/*.deb "$root/root/new/"
 cp "$here/inside.sh" "$root/root/"
 in_root() { systemd-nspawn -q -D "$root" --register=no --keep-unit --console=pipe --bind="$kept/archives:/var/cache/apt/archives" "$@" </dev/null; }
-check "the dependencies are fetched" in_root apt-get install --yes --download-only /root/built/prismesh.deb /root/built/prismesh-station.deb
-[ $failed -eq 0 ] || { cat "$work/said"; exit 1; }
+in_root apt-get install --yes --download-only /root/built/prismesh.deb /root/built/prismesh-station.deb >"$work/said" 2>&1 ||
+  { tail -n 20 "$work/said"; give_up "their dependencies couldn't be fetched"; }
 
 # --- in an image that is being made, without systemd running ---
 cp -a --reflink=auto "$root" "$work/image"
