@@ -173,7 +173,7 @@ check "no unit has failed" bash -c 'said=$(systemctl list-units --failed --no-le
 # --- the command line alone ---
 check "the command line is installed alone" apt install /root/new/prismesh.deb
 check "it edits a deck" as_engineer prismesh edit /home/engineer/own.k --edit '{"edit":"select","expr":"5000001-5000040"}' --edit '{"edit":"lift","distance":6}' -o /home/engineer/pulled.k
-check "it says what draws pictures" bash -c 'said=$(prismesh render /home/engineer/own.k -o /tmp/a.png 2>&1); echo "$said"; [[ "$said" == *prismesh-kiosk* ]]'
+check "it says what draws pictures" bash -c 'said=$(prismesh render /home/engineer/own.k -o /tmp/a.png 2>&1); echo "$said"; [[ "$said" == *"package prismesh-station"* ]]'
 check "no daemon came with it" bash -c '! ls /lib/systemd/system/prismesh*'
 [ $failed -eq 0 ] && echo "all is well"
 exit 0

@@ -16,7 +16,6 @@ give_up() {
 for tool in systemd-nspawn mmdebstrap lintian desktop-file-validate xmllint gio; do
   command -v $tool >/dev/null || give_up "$tool is missing"
 done
-[ -d /run/systemd ] || mkdir -p /run/systemd  # systemd-nspawn wants it, where systemd doesn't run
 
 failed=0
 check() {
