@@ -38,7 +38,7 @@ Result<std::filesystem::path> find_kiosk() {
   const std::filesystem::path own = std::filesystem::read_symlink("/proc/self/exe", error);
   const std::filesystem::path kiosk = own.parent_path() / kKiosk;
   if (error || access(kiosk.c_str(), X_OK) != 0)
-    return fail(kiosk.string(), "prismesh-kiosk, which draws pictures, isn't beside this program");
+    return fail(kiosk.string(), "prismesh-kiosk, which draws pictures, isn't beside this program; the package prismesh-station has it");
   return kiosk;
 }
 

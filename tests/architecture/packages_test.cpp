@@ -1,4 +1,4 @@
-// packages.txt is the one list of packages: known sections, valid names, no duplicates.
+// packages.txt is the one list of packages: known sections, valid names, no duplicates. debian/ says the same.
 #include <map>
 #include <regex>
 #include <set>
@@ -34,7 +34,7 @@ Sections read_packages() {
 TEST(Packages, have_a_section_for_each_purpose) {
   std::vector<std::string> names;
   for (const auto& [name, packages] : read_packages()) names.push_back(name);
-  EXPECT_THAT(names, testing::UnorderedElementsAre("[run]", "[build]", "[test]", "[judge]", "[image]"));
+  EXPECT_THAT(names, testing::UnorderedElementsAre("[run]", "[build]", "[test]", "[judge]", "[package]", "[package-test]", "[image]"));
 }
 
 TEST(Packages, are_named_as_debian_names_them_and_stand_once) {
@@ -56,10 +56,38 @@ TEST(Packages, running_needs_no_headers_and_no_compiler) {
   }
 }
 
+/// The names in the field of debian/control that begins with `field`.
+std::set<std::string> control_field(const std::string& field) {
+  std::istringstream lines(read_text(project_root() / "debian/control"));
+  std::string line;
+  std::set<std::string> names;
+  for (bool inside = false; std::getline(lines, line);) {
+    inside = line.starts_with(field) || (inside && line.starts_with(' '));
+    if (!inside) continue;
+    std::istringstream entries(line.substr(line.starts_with(field) ? field.size() : 0));
+    for (std::string entry, name; std::getline(entries, entry, ',');)
+      if (std::istringstream(entry) >> name) names.insert(name);
+  }
+  return names;
+}
+
+TEST(Packages, that_the_build_needs_are_those_of_the_source_package) {
+  std::set<std::string> needed{"debhelper-compat", "dh-sequence-installsysusers"};
+  const std::vector<std::string> packages = read_packages()["[build]"];
+  for (const std::string& package : packages)
+    if (package != "g++" && package != "ccache") needed.insert(package);  // g++ is there for each build of a package, ccache isn't needed
+  EXPECT_EQ(control_field("Build-Depends:"), needed) << "debian/control, Build-Depends, differs from [build] in packages.txt";
+}
+
+TEST(Packages, have_the_version_of_the_programs) {
+  const std::string changelog = read_text(project_root() / "debian/changelog");
+  EXPECT_THAT(changelog, testing::StartsWith("prismesh (" PRISMESH_VERSION ")"));
+}
+
 TEST(Packages, are_installed_in_one_place_that_removes_nothing) {
   EXPECT_THAT(read_text(project_root() / "scripts/steps.sh"),
               testing::HasSubstr("apt-get install -y -qq --no-install-recommends --no-remove"));
-  for (const char* script : {"station", "scripts/test.sh", ".ci/run", "demo/play", "demo/station"})
+  for (const char* script : {"station", "scripts/test.sh", "scripts/package.sh", ".ci/run", "demo/play", "demo/station"})
     EXPECT_THAT(read_text(project_root() / script), testing::Not(testing::HasSubstr("apt-get"))) << script;
 }
 
