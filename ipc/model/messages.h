@@ -48,7 +48,7 @@ struct ApplyEdit {
   mesh::document::Edit edit;
 };
 struct BeginDrag {
-  mesh::document::Edit edit;  ///< translate, lift, slide or rotate; the displacement is ignored
+  mesh::document::Edit edit;  ///< translate, lift, slide, rotate or move; the displacement is ignored
 };
 struct DragStep {  ///< no answer; the preview shows it
   std::uint64_t drag = 0;
@@ -74,7 +74,7 @@ struct PreviewEdit {  ///< asks what an edit would do, without applying it
   mesh::document::Edit edit;
 };
 struct FindFollowedEdges {    ///< asks which free edges would follow an edit, without applying it
-  mesh::document::Edit edit;  ///< translate, lift, slide or rotate; the displacement is ignored
+  mesh::document::Edit edit;  ///< translate, lift, slide, rotate or move; the displacement is ignored
 };
 /// Asks for a field (mesh/document/field.h).
 struct GetField {

@@ -21,6 +21,7 @@ Result<void> apply_edit(const Document& document, const Translate& edit, Generat
 Result<void> apply_edit(const Document& document, const Lift& edit, Generation& next, EditReport& report);
 Result<void> apply_edit(const Document& document, const Slide& edit, Generation& next, EditReport& report);
 Result<void> apply_edit(const Document& document, const Rotate& edit, Generation& next, EditReport& report);
+Result<void> apply_edit(const Document& document, const Move& edit, Generation& next, EditReport& report);
 Result<void> apply_edit(const Document& document, const Relax& edit, Generation& next, EditReport& report, const Progress& progress);
 Result<void> apply_edit(const Document& document, const Repair& edit, Generation& next, EditReport& report, const Progress& progress);
 Result<void> apply_edit(const Document& document, const Restructure& edit, Generation& next, EditReport& report);

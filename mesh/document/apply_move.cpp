@@ -119,4 +119,8 @@ Result<void> apply_edit(const Document& document, const Rotate& edit, Generation
   return move(document, edit, next, report);
 }
 
+Result<void> apply_edit(const Document& document, const Move& edit, Generation& next, EditReport& report) {
+  return move(document, edit, next, report);
+}
+
 }  // namespace prismesh::mesh::document

@@ -21,7 +21,7 @@ struct Motion;
 
 class Drag {
  public:
-  /// `edit` is a Translate, Lift, Slide or Rotate; its displacement is ignored. Errors as `prepare`.
+  /// `edit` is a Translate, Lift, Slide, Rotate or Move; its displacement is ignored. Errors as `prepare`.
   static Result<Drag> begin(std::shared_ptr<const Generation> base, const Edit& edit);
 
   /// Nodes that can move (weight > 0) and the shells that touch them; fixed for the whole drag.

@@ -21,6 +21,10 @@ Displacement displacement_of(const Edit& edit) {
   if (const auto* slide = std::get_if<Slide>(&edit)) displacement.by = slide->by;
   if (const auto* lift = std::get_if<Lift>(&edit)) displacement.distance = lift->distance;
   if (const auto* rotate = std::get_if<Rotate>(&edit)) displacement.degrees = rotate->degrees;
+  if (const auto* move = std::get_if<Move>(&edit)) {
+    displacement.by = move->by;
+    displacement.degrees = move->degrees;
+  }
   return displacement;
 }
 
@@ -29,6 +33,10 @@ void set_displacement(Edit& edit, const Displacement& displacement) {
   if (auto* slide = std::get_if<Slide>(&edit)) slide->by = displacement.by;
   if (auto* lift = std::get_if<Lift>(&edit)) lift->distance = displacement.distance;
   if (auto* rotate = std::get_if<Rotate>(&edit)) rotate->degrees = displacement.degrees;
+  if (auto* move = std::get_if<Move>(&edit)) {
+    move->by = displacement.by;
+    move->degrees = displacement.degrees;
+  }
 }
 
 }  // namespace prismesh::mesh::document

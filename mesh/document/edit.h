@@ -119,11 +119,20 @@ struct Rotate {
   double degrees = 0;         ///< right-handed
   Shaping shaping;
 };
-/// The displacement of a shaping edit; each kind uses its own field.
+/// A rigid motion, as a hand makes it with a pen: every node is turned about the axis by its weight's share of the angle, then moved by its
+/// share of `by`.
+struct Move {
+  Vec3 by = Vec3::Zero();
+  Vec3 point = Vec3::Zero();  ///< on the axis, deck coordinates
+  Vec3 axis = Vec3::UnitZ();  ///< of any length but zero
+  double degrees = 0;         ///< right-handed
+  Shaping shaping;
+};
+/// The displacement of a shaping edit; each kind uses its own fields.
 struct Displacement {
-  Vec3 by = Vec3::Zero();  ///< translate, slide
+  Vec3 by = Vec3::Zero();  ///< translate, slide, move
   double distance = 0;     ///< lift
-  double degrees = 0;      ///< rotate
+  double degrees = 0;      ///< rotate, move
 };
 
 /// Which shells are relaxed or repaired.
@@ -174,7 +183,7 @@ struct Undo {};
 struct Redo {};
 
 using Edit = std::variant<Select, SelectRegion, SelectLasso, Grow, Shrink, Invert, SetParts, SetTargetSize, SetCriteria, Translate, Lift,
-                          Slide, Rotate, Relax, Repair, Restructure, Undo, Redo>;
+                          Slide, Rotate, Move, Relax, Repair, Restructure, Undo, Redo>;
 
 /// The Shaping of a shaping edit; null for the others.
 const Shaping* shaping_of(const Edit& edit);

@@ -148,6 +148,8 @@ PRISMESH_JSON_OBJECT(mesh::document::Lift, f.required("distance", m.distance), f
 PRISMESH_JSON_OBJECT(mesh::document::Slide, f.required("by", m.by), Definition<mesh::document::Shaping>::fields(m.shaping, f));
 PRISMESH_JSON_OBJECT(mesh::document::Rotate, f.required("point", m.point), f.required("axis", m.axis, DirectionLimits{}),
                      f.required("degrees", m.degrees, kTurns), Definition<mesh::document::Shaping>::fields(m.shaping, f));
+PRISMESH_JSON_OBJECT(mesh::document::Move, f("by", m.by), f("point", m.point), f("axis", m.axis, DirectionLimits{}),
+                     f("degrees", m.degrees, kTurns), Definition<mesh::document::Shaping>::fields(m.shaping, f));
 PRISMESH_JSON_OBJECT(mesh::document::Relax, f("mode", m.mode), f("at", m.at), f("threshold", m.threshold, kPositive), f("scope", m.scope),
                      f("angle", m.angle, kEdgeAngles), f("max_move", m.max_move));
 PRISMESH_JSON_OBJECT(mesh::document::Repair, f("scope", m.scope), f("angle", m.angle, kEdgeAngles), f("max_move", m.max_move),

@@ -31,6 +31,7 @@ std::span<const EditKind> edit_kinds() {
         {"lift", shaping, Lift{}},
         {"slide", shaping, Slide{}},
         {"rotate", shaping, Rotate{}},
+        {"move", shaping, Move{}},
         {"relax", mending, Relax{}},
         {"repair", mending, Repair{}},
         {"undo", step, Undo{}},

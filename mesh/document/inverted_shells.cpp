@@ -64,7 +64,8 @@ std::vector<ShellIndex> inverted_shells(const Model& before, const Model& after,
     if (!(was.squaredNorm() > 0)) continue;
     const Vec3 is = normal_of(after, shell);
     const bool was_convex = is_convex(before, shell, was);
-    if (motion.kind == ShapingKind::rotate) was = turned_with(motion, before.shell(shell), degrees, was);
+    if (motion.kind == ShapingKind::rotate || motion.kind == ShapingKind::move)
+      was = turned_with(motion, before.shell(shell), degrees, was);
     if (!(is.dot(was) > 0) || (was_convex && !is_convex(after, shell, is))) inverted.push_back(shell);
   }
   return inverted;

@@ -64,12 +64,16 @@ std::size_t positions_at(const Motion& motion, const Displacement& displacement,
     case ShapingKind::rotate:
       held_back = shape::rotate(motion.start, motion.weight, {motion.axis, displacement.degrees, motion.max_move}, out);
       break;
+    case ShapingKind::move:
+      shape::rotate(motion.start, motion.weight, {motion.axis, displacement.degrees, std::nullopt}, out);
+      shape::translate(out, motion.weight, displacement.by, out);
+      break;
     case ShapingKind::slide: held_back = slide_to(motion, displacement.by, out); break;
   }
   if (motion.plane && motion.kind != ShapingKind::slide) mirror(motion, out);
   follow(motion, out);
   // Rotating and sliding limit a node on its path.
-  if (motion.kind == ShapingKind::translate || motion.kind == ShapingKind::lift) held_back = hold_back(motion, out);
+  if (motion.kind != ShapingKind::rotate && motion.kind != ShapingKind::slide) held_back = hold_back(motion, out);
   for (std::size_t i = 0; i < out.size(); ++i)
     if (out[i] == motion.start[i]) out[i] = motion.start[i];  // -0 stays -0: a node that hasn't moved keeps its bits
   return held_back;

@@ -17,7 +17,7 @@
 
 namespace prismesh::mesh::document {
 
-enum class ShapingKind : std::uint8_t { translate, lift, slide, rotate };
+enum class ShapingKind : std::uint8_t { translate, lift, slide, rotate, move };
 
 /// Everything about a motion that doesn't depend on the displacement.
 struct Motion {
@@ -35,7 +35,7 @@ struct Motion {
   std::vector<double> weight;                          ///< of each
   std::vector<Vec3> start;                             ///< of each
   std::vector<Vec3> normals;                           ///< lift: of each, or one for all
-  shape::Axis axis;                                    ///< rotate
+  shape::Axis axis;                                    ///< rotate, move
   std::shared_ptr<const shape::SurfaceTracer> tracer;  ///< slide
   std::vector<Eigen::Quaterniond> turns;               ///< slide: how `by` turns on its way to each node
   std::optional<shape::Plane> plane;                   ///< of symmetry

@@ -79,6 +79,7 @@ Result<shape::WeightPlaces> find_places(const Model& model, const NodeSet& nodes
 ShapingKind motion_kind(const Edit& edit) {
   if (std::holds_alternative<Lift>(edit)) return ShapingKind::lift;
   if (std::holds_alternative<Slide>(edit)) return ShapingKind::slide;
+  if (std::holds_alternative<Move>(edit)) return ShapingKind::move;
   return std::holds_alternative<Rotate>(edit) ? ShapingKind::rotate : ShapingKind::translate;
 }
 
@@ -88,7 +89,9 @@ Result<void> refuse_unsound(const Edit& edit, const Shaping& shaping) {
   const Displacement displacement = displacement_of(edit);
   if (!displacement.by.allFinite() || !std::isfinite(displacement.distance) || !std::isfinite(displacement.degrees))
     return fail("", what + ": how far it goes must be a finite number");
-  if (const auto* rotate = std::get_if<Rotate>(&edit); rotate != nullptr && !rotate->point.allFinite())
+  const auto* rotate = std::get_if<Rotate>(&edit);
+  const auto* rigid = std::get_if<Move>(&edit);
+  if ((rotate != nullptr && !rotate->point.allFinite()) || (rigid != nullptr && !rigid->point.allFinite()))
     return fail("", what + ": the axis's point must be of finite numbers");
   if (shaping.max_move && !(*shaping.max_move > 0)) return fail("", what + ": max_move must be greater than 0");
   const auto finite = [](const std::array<double, 3>& point) { return Vec3(point[0], point[1], point[2]).allFinite(); };
@@ -127,11 +130,16 @@ Result<void> find_tracer(const Model& model, Motion& motion) {
 /// Enters what the kind of motion needs besides weights: axis, normals, surface.
 Result<void> find_directions(const Model& model, const Edit& edit, Motion& motion) {
   motion.normal = shape::oriented_normals(model, {motion.grab}, motion.grab).front();
-  if (const auto* rotate = std::get_if<Rotate>(&edit)) {
-    const std::optional<Vec3> direction = shape::unit_of(rotate->axis);
-    if (!direction) return fail("", "rotate: the axis must be a direction of finite numbers, not all 0");
-    motion.axis = {rotate->point, *direction};
-  }
+  const auto find_axis = [&](const auto& turn) -> Result<void> {
+    const std::optional<Vec3> direction = shape::unit_of(turn.axis);
+    if (!direction) return fail("", std::string(name(edit)) + ": the axis must be a direction of finite numbers, not all 0");
+    motion.axis = {turn.point, *direction};
+    return {};
+  };
+  Result<void> axis;
+  if (const auto* rotate = std::get_if<Rotate>(&edit)) axis = find_axis(*rotate);
+  if (const auto* rigid = std::get_if<Move>(&edit)) axis = find_axis(*rigid);
+  if (!axis) return axis;
   if (motion.kind == ShapingKind::slide) return find_tracer(model, motion);
   if (motion.kind != ShapingKind::lift) return {};
   const bool each = std::get<Lift>(edit).each_normal;

@@ -43,6 +43,7 @@ TEST(EditJson, every_edit_reads_its_example) {
           R"({"edit":"slide","by":[3,0,0],"grab":7,"max_move":2,"across_welds":true})",
           R"({"edit":"translate","by":[0,0,1],"free_ends":"weighted","origin":"free_edge","origin_at":[1,2,3]})",
           R"({"edit":"rotate","point":[0,0,1],"axis":[0,2,0],"degrees":-30,"on":"1-9","free_ends":true})",
+          R"({"edit":"move","by":[1,2,3],"point":[0,0,1],"axis":[0,2,0],"degrees":-30,"on":"1-9"})",
           R"({"edit":"translate","by":[0,0,1],"symmetry":{"point":[0,1,0],"normal":[0,1,0]}})",
           R"({"edit":"undo"})",
           R"({"edit":"redo"})",

@@ -89,6 +89,52 @@ TEST(Shaping, free_ends_turn_as_a_whole) {
     }
 }
 
+TEST(Shaping, a_rigid_motion_keeps_all_distances) {
+  Document document = make_sheet(20, 4);
+  must_apply(
+      document,
+      R"({"edit":"move","by":[3,-2,7],"point":[50,0,0],"axis":[0,-3,0],"degrees":90,"on":"11-21,32-42,53-63,74-84,95-105","falloff":{"profile":"constant"}})");
+  // turned first, then moved
+  for (int i = 10; i <= 20; ++i) EXPECT_LT((place_of(document, 1 + i) - Vec3(53, -2, 5.0 * (i - 10) + 7)).norm(), 1e-12);
+}
+
+TEST(Shaping, a_motion_of_one_kind_is_that_of_the_other_edits) {
+  const auto same = [](const std::string& a, const std::string& b) {
+    Document one = make_document(wavy_with_midsides()), two = make_document(wavy_with_midsides());
+    must_apply(one, a);
+    must_apply(two, b);
+    for (std::size_t n = 0; n < one.current().model.node_count(); ++n)
+      ASSERT_EQ(one.current().model.positions[n], two.current().model.positions[n]) << a;
+  };
+  const std::string rest = R"(,"on":"300-1400","grab":700,"falloff":{"profile":"sharp"}})";
+  same(R"({"edit":"move","by":[1,2,3])" + rest, R"({"edit":"translate","by":[1,2,3])" + rest);
+  const std::string turn = R"("point":[20,20,5],"axis":[1,2,3],"degrees":33)";
+  same(R"({"edit":"move",)" + turn + rest, R"({"edit":"rotate",)" + turn + rest);
+}
+
+TEST(Shaping, the_share_of_a_motion_is_a_share_of_its_turn_and_its_way) {
+  Document document = make_sheet(8, 2);
+  must_apply(
+      document,
+      R"({"edit":"move","by":[0,0,14],"point":[0,0,0],"axis":[0,0,1],"degrees":70,"on":"2-9,11-18,20-27","grab":18,"falloff":{"profile":"linear"}})");
+  for (int i = 1; i <= 8; ++i) {
+    const double share = (i - 1) / 7.0;
+    const Vec3 to = place_of(document, 1 + i + 9);
+    EXPECT_NEAR(to.z(), 14 * share, 1e-9);
+    EXPECT_NEAR(to.head<2>().norm(), Vec3(5.0 * i, 5, 0).norm(), 1e-9);
+    EXPECT_NEAR(std::atan2(to.y(), to.x()) - std::atan2(5, 5.0 * i), 70 * share * M_PI / 180, 1e-9);
+  }
+}
+
+TEST(Shaping, max_move_holds_a_motion_on_the_line_to_its_start) {
+  Document document = make_sheet(8, 2);
+  const EditReport report = must_apply(
+      document,
+      R"({"edit":"move","by":[0,0,30],"point":[0,0,0],"axis":[0,0,1],"degrees":20,"on":"9,18,27","falloff":{"profile":"constant"},"max_move":4})");
+  for (const int id : {9, 18, 27}) EXPECT_NEAR((place_of(document, id) - Vec3(40, 5.0 * ((id - 9) / 9), 0)).norm(), 4, 1e-9);
+  EXPECT_THAT(report.notes, Contains(HasSubstr("3 nodes held back by max_move")));
+}
+
 TEST(Shaping, sliding_leaves_no_face) {
   Document document = make_document(wavy_with_midsides());
   must_apply(document, R"({"edit":"slide","by":[14,9,2],"on":"300-1400","free_ends":false})");
@@ -109,6 +155,7 @@ TEST(Shaping, both_sides_of_a_plane) {
                            R"({"edit":"translate","by":[1.5,2.5,-3],"on":"1-300","grab":100)",
                            R"({"edit":"lift","distance":4,"normals":"each","on":"22-300","grab":100)",
                            R"({"edit":"rotate","point":[20,20,5],"axis":[1,2,3],"degrees":33,"on":"22-300","grab":100)",
+                           R"({"edit":"move","by":[2,3,-1],"point":[20,20,5],"axis":[1,2,3],"degrees":33,"on":"22-300","grab":100)",
                            R"({"edit":"slide","by":[6,8,1],"on":"22-300","grab":100)"}) {
     Document document = make_document(symmetric_sheet());
     must_apply(document, std::string(text) + R"(,"symmetry":{"point":[0,7,3],"normal":[2,0,0]}})");
@@ -338,6 +385,11 @@ TEST(Shaping, what_makes_no_sense_is_refused_in_a_sentence) {
                                r.shaping.grab_at = std::array<double, 3>{much, 0, 0};
                              })),
               HasSubstr("the grab's place"));
+  Move rigid{Vec3(1, 2, 3), Vec3::Zero(), Vec3::UnitZ(), 10, {}};
+  rigid.shaping.on = "100-148";
+  EXPECT_THAT(refuse(changed(rigid, [](Move& m) { m.axis.setZero(); })), HasSubstr("move: the axis must be a direction"));
+  EXPECT_THAT(refuse(changed(rigid, [&](Move& m) { m.point.x() = much; })), HasSubstr("the axis's point"));
+  EXPECT_THAT(refuse(changed(rigid, [&](Move& m) { m.by.x() = nothing; })), HasSubstr("must be a finite number"));
   EXPECT_THAT(refuse(changed(rotate, [](Rotate& r) { r.shaping.weights.falloff.flat = 2; })), HasSubstr("flat share"));
   EXPECT_THAT(refuse(changed(rotate,
                              [](Rotate& r) {
