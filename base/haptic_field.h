@@ -37,6 +37,9 @@ struct HapticBrick {
   /// below 0.0001 mm. Distances above 4 * spacing may be replaced by any number from 4 * spacing to the true distance, as long as two
   /// neighbouring nodes differ by no more than their distance (a minimum with a constant does that). Without shells: any such constant.
   float distance_mm[kMaxBrickNodes];
+  /// The same for the shells of which no corner has moved since `before_generation`. Read only where max_moved_mm > 0 and before_generation
+  /// isn't 0; so distance_mm is the smaller of this and the distance to the moved triangles in their new places.
+  float still_mm[kMaxBrickNodes];
   std::int32_t nearest[kMaxBrickNodes];  ///< the mesh's index of the element that has this nearest point; -1: none, or not known
 };
 

@@ -30,35 +30,62 @@ bool covers(const HapticBrick& brick, const Eigen::Vector3d& at_mm) {
   return true;
 }
 
-FieldSample sample_brick(const HapticBrick& brick, const Eigen::Vector3d& at_mm) {
-  double share[3];
-  std::int32_t cell[3];
-  for (int axis = 0; axis < 3; ++axis) {
-    const double along = (at_mm[axis] - brick.origin_mm[axis]) / brick.spacing_mm;
-    cell[axis] = std::clamp(static_cast<std::int32_t>(along), 0, brick.count[axis] - 2);
-    share[axis] = std::clamp(along - cell[axis], 0.0, 1.0);
+/// The eight nodes about a place, and the shares of the place between them.
+struct CellPlace {
+  CellPlace(const HapticBrick& brick, const Eigen::Vector3d& at_mm) {
+    std::int32_t cell[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      const double along = (at_mm[axis] - brick.origin_mm[axis]) / brick.spacing_mm;
+      cell[axis] = std::clamp(static_cast<std::int32_t>(along), 0, brick.count[axis] - 2);
+      share[axis] = std::clamp(along - cell[axis], 0.0, 1.0);
+    }
+    row = brick.count[0];
+    layer = brick.count[0] * brick.count[1];
+    first = cell[0] + row * cell[1] + layer * cell[2];
+    const auto [u, v, w] = share;
+    error_mm = brick.spacing_mm * std::sqrt(u * (1 - u) + v * (1 - v) + w * (1 - w)) + kRoundingMm;
   }
-  const std::int32_t row = brick.count[0], layer = brick.count[0] * brick.count[1];
-  const std::int32_t first = cell[0] + row * cell[1] + layer * cell[2];
-  const auto at = [&](std::int32_t i) { return static_cast<double>(brick.distance_mm[first + i]); };
-  const double d000 = at(0), d100 = at(1), d010 = at(row), d110 = at(row + 1);
-  const double d001 = at(layer), d101 = at(layer + 1), d011 = at(layer + row), d111 = at(layer + row + 1);
-  FieldSample result;
+  std::array<double, 3> share;
+  std::int32_t row, layer, first;
+  double error_mm;  ///< of the trilinear distance
+};
+
+struct TrilinearValue {
+  bool known = false;
+  double value = 0;
+  Eigen::Vector3d slope = Eigen::Vector3d::Zero();  ///< for each cell
+};
+
+TrilinearValue trilinear(const float* values, const CellPlace& place) {
+  const auto at = [&](std::int32_t i) { return static_cast<double>(values[place.first + i]); };
+  const double d000 = at(0), d100 = at(1), d010 = at(place.row), d110 = at(place.row + 1);
+  const double d001 = at(place.layer), d101 = at(place.layer + 1), d011 = at(place.layer + place.row),
+               d111 = at(place.layer + place.row + 1);
+  TrilinearValue result;
   for (const double distance : {d000, d100, d010, d110, d001, d101, d011, d111})
     if (!(distance >= 0 && distance < 1e6)) return result;
-  const auto [u, v, w] = std::array{share[0], share[1], share[2]};
-  const double x00 = d000 + u * (d100 - d000), x10 = d010 + u * (d110 - d010);
-  const double x01 = d001 + u * (d101 - d001), x11 = d011 + u * (d111 - d011);
-  const double y0 = x00 + v * (x10 - x00), y1 = x01 + v * (x11 - x01);
+  const auto [u, v, w] = place.share;
   const auto mix = [](double from, double to, double s) { return from + s * (to - from); };
+  const double x00 = mix(d000, d100, u), x10 = mix(d010, d110, u), x01 = mix(d001, d101, u), x11 = mix(d011, d111, u);
+  const double y0 = mix(x00, x10, v), y1 = mix(x01, x11, v);
   result.known = true;
-  result.distance_mm = y0 + w * (y1 - y0);
+  result.value = mix(y0, y1, w);
+  result.slope = {mix(mix(d100 - d000, d110 - d010, v), mix(d101 - d001, d111 - d011, v), w), mix(x10 - x00, x11 - x01, w), y1 - y0};
+  return result;
+}
+
+FieldSample sample_brick(const HapticBrick& brick, const Eigen::Vector3d& at_mm) {
+  const CellPlace place(brick, at_mm);
+  const TrilinearValue distance = trilinear(brick.distance_mm, place);
+  FieldSample result;
+  if (!distance.known) return result;
+  result.known = true;
+  result.distance_mm = distance.value;
   result.spacing_mm = brick.spacing_mm;
-  result.proved_mm = result.distance_mm - brick.spacing_mm * std::sqrt(u * (1 - u) + v * (1 - v) + w * (1 - w)) - kRoundingMm;
-  result.gradient =
-      Eigen::Vector3d(mix(mix(d100 - d000, d110 - d010, v), mix(d101 - d001, d111 - d011, v), w), mix(x10 - x00, x11 - x01, w), y1 - y0) /
-      brick.spacing_mm;
-  result.element = brick.nearest[first + (u > 0.5 ? 1 : 0) + (v > 0.5 ? row : 0) + (w > 0.5 ? layer : 0)];
+  result.proved_mm = distance.value - place.error_mm;
+  result.gradient = distance.slope / brick.spacing_mm;
+  const auto [u, v, w] = place.share;
+  result.element = brick.nearest[place.first + (u > 0.5 ? 1 : 0) + (v > 0.5 ? place.row : 0) + (w > 0.5 ? place.layer : 0)];
   return result;
 }
 
@@ -85,6 +112,16 @@ FieldSample sample(const HapticField& field, const Eigen::Vector3d& at_mm) {
   return {};
 }
 
+double proved_still_mm(const HapticField& field, const Eigen::Vector3d& at_mm) {
+  for (const HapticBrick* brick : {&field.fine, &field.coarse}) {
+    if (!covers(*brick, at_mm)) continue;
+    const CellPlace place(*brick, at_mm);
+    const TrilinearValue distance = trilinear(brick->still_mm, place);
+    return distance.known ? distance.value - place.error_mm : -1;
+  }
+  return -1;
+}
+
 MovedNearest nearest_moved(const HapticField& field, const Eigen::Vector3d& at_mm, double part) {
   MovedNearest result;
   if (!covers(field.coarse, at_mm)) return result;
@@ -100,10 +137,10 @@ MovedNearest nearest_moved(const HapticField& field, const Eigen::Vector3d& at_m
     const std::uint16_t index = field.bucket_entry[i];
     if (index >= field.moved_count) return result;
     const MovedTriangle& triangle = field.moved[index];
-    const Eigen::Vector3d point =
-        nearest_of_triangle(at_mm, corner_at(triangle, 0, part), corner_at(triangle, 1, part), corner_at(triangle, 2, part));
+    const Eigen::Vector3d corners[3] = {corner_at(triangle, 0, part), corner_at(triangle, 1, part), corner_at(triangle, 2, part)};
+    if (!(corners[0] + corners[1] + corners[2]).allFinite()) return result;
+    const Eigen::Vector3d point = nearest_of_triangle(at_mm, corners[0], corners[1], corners[2]);
     const double square = (point - at_mm).squaredNorm();
-    if (!(square >= 0)) return result;
     if (square >= best) continue;
     best = square;
     result.point_mm = point;

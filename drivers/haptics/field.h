@@ -27,6 +27,9 @@ struct FieldSample {
 /// Reads the fine brick where it covers the place, else the coarse one. `field` must be usable.
 FieldSample sample(const HapticField& field, const Eigen::Vector3d& at_mm);
 
+/// Returns a proved bound of the distance to the shells that haven't moved since the generation before; negative where there is none.
+double proved_still_mm(const HapticField& field, const Eigen::Vector3d& at_mm);
+
 /// The nearest point of the moved triangles at a time of their motion.
 struct MovedNearest {
   bool known = false;                                  ///< false: outside of the buckets, or too many triangles in one

@@ -80,7 +80,7 @@ bool Proxy::carry(const HapticField& field, ProxyPath* path) {
     clearance_mm_ -= field.max_moved_mm;
     return true;
   }
-  static_mm_ = std::max(clearance_mm_, here_.proved_mm);
+  static_mm_ = std::max(clearance_mm_, proved_still_mm(field, place_mm_));
   MovedNearest nearest = nearest_moved(field, place_mm_, 0);
   if (!nearest.known || nearest.distance_mm < kMinClearanceMm) return false;
   // Keeps the distance that it has, so that the force doesn't jump.
@@ -109,10 +109,8 @@ bool Proxy::push_away(const HapticField& field, double part, double hold_mm, Mov
   for (double step_mm = hold_mm - nearest.distance_mm; step_mm > 0.05 * hold_mm; step_mm /= 2) {
     const Eigen::Vector3d to_mm = place_mm_ + step_mm * away;
     const MovedNearest moved = nearest_moved(field, to_mm, part);
-    const FieldSample there = sample(field, to_mm);
-    if (!moved.known || !there.known) continue;
-    // The new field holds the moved shells too, at their last place: its bound holds for those that don't move.
-    const double still_mm = std::max(static_mm_ - step_mm, there.proved_mm);
+    if (!moved.known) continue;
+    const double still_mm = std::max(static_mm_ - step_mm, proved_still_mm(field, to_mm));
     if (static_mm_ + still_mm <= step_mm || still_mm < kMinClearanceMm) continue;
     if (nearest.distance_mm + moved.distance_mm <= step_mm || moved.distance_mm < nearest.distance_mm) continue;
     place_mm_ = to_mm;

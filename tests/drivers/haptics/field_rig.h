@@ -56,8 +56,10 @@ inline bool meets(const Triangles& triangles, const Eigen::Vector3d& from, const
 
 using Distance = std::function<double(const Eigen::Vector3d&)>;
 
-inline void fill_brick(HapticBrick& brick, const Eigen::Vector3d& centre_mm, double spacing_mm, std::int32_t count,
-                       const Distance& distance) {
+/// `still`: of what hasn't moved.
+template <class DistanceOf, class StillOf>
+void fill_brick(HapticBrick& brick, const Eigen::Vector3d& centre_mm, double spacing_mm, std::int32_t count, const DistanceOf& distance,
+                const StillOf& still) {
   brick.spacing_mm = spacing_mm;
   for (int axis = 0; axis < 3; ++axis) {
     brick.count[axis] = count;
@@ -70,6 +72,7 @@ inline void fill_brick(HapticBrick& brick, const Eigen::Vector3d& centre_mm, dou
         const Eigen::Vector3d at(brick.origin_mm[0] + spacing_mm * x, brick.origin_mm[1] + spacing_mm * y,
                                  brick.origin_mm[2] + spacing_mm * z);
         brick.distance_mm[i] = static_cast<float>(distance(at));
+        brick.still_mm[i] = static_cast<float>(still(at));
         brick.nearest[i] = 7;
       }
 }
@@ -87,8 +90,8 @@ inline std::unique_ptr<HapticField> make_field(const Distance& distance, const F
   field->number = 1;
   field->mesh_generation = 1;
   field->moved_reach_mm = 1.5 * shape.coarse_mm;
-  fill_brick(field->fine, shape.centre_mm, shape.fine_mm, shape.fine_count, distance);
-  fill_brick(field->coarse, shape.centre_mm, shape.coarse_mm, shape.coarse_count, distance);
+  fill_brick(field->fine, shape.centre_mm, shape.fine_mm, shape.fine_count, distance, [](const Eigen::Vector3d&) { return 1e3; });
+  fill_brick(field->coarse, shape.centre_mm, shape.coarse_mm, shape.coarse_count, distance, [](const Eigen::Vector3d&) { return 1e3; });
   return field;
 }
 
@@ -96,7 +99,8 @@ inline std::unique_ptr<HapticField> make_field(const Distance& distance, const F
 inline void enter_moved(HapticField& field, const Triangles& before, const Triangles& now) {
   field.moved_count = static_cast<std::int32_t>(now.size());
   field.max_moved_mm = 0;
-  std::vector<std::vector<std::uint16_t>> buckets(kBuckets);
+  // Each triangle's range of buckets: the box about both places, grown by the reach.
+  std::vector<std::array<int, 6>> ranges(now.size());
   const double side = field.coarse.spacing_mm * (field.coarse.count[0] - 1) / kBucketSide;
   for (std::size_t i = 0; i < now.size(); ++i) {
     Eigen::AlignedBox3d box;
@@ -109,22 +113,23 @@ inline void enter_moved(HapticField& field, const Triangles& before, const Trian
         field.moved[i].now_mm[corner][axis] = static_cast<float>(now[i][corner][axis]);
       }
     }
-    int low[3], high[3];
     for (int axis = 0; axis < 3; ++axis) {
       const auto cell = [&](double mm) {
         return std::clamp(static_cast<int>(std::floor((mm - field.coarse.origin_mm[axis]) / side)), -1, kBucketSide);
       };
-      low[axis] = std::max(0, cell(box.min()[axis] - field.moved_reach_mm));
-      high[axis] = std::min(kBucketSide - 1, cell(box.max()[axis] + field.moved_reach_mm));
+      ranges[i][axis] = std::max(0, cell(box.min()[axis] - field.moved_reach_mm));
+      ranges[i][axis + 3] = std::min(kBucketSide - 1, cell(box.max()[axis] + field.moved_reach_mm));
     }
-    for (int z = low[2]; z <= high[2]; ++z)
-      for (int y = low[1]; y <= high[1]; ++y)
-        for (int x = low[0]; x <= high[0]; ++x) buckets[x + kBucketSide * (y + kBucketSide * z)].push_back(static_cast<std::uint16_t>(i));
   }
   std::uint32_t count = 0;
   for (std::int32_t b = 0; b < kBuckets; ++b) {
     field.bucket_begin[b] = count;
-    for (const std::uint16_t index : buckets[b]) field.bucket_entry[count++] = index;
+    const int at[3] = {b % kBucketSide, b / kBucketSide % kBucketSide, b / kBucketSide / kBucketSide};
+    for (std::size_t i = 0; i < ranges.size(); ++i) {
+      bool within = true;
+      for (int axis = 0; axis < 3; ++axis) within = within && at[axis] >= ranges[i][axis] && at[axis] <= ranges[i][axis + 3];
+      if (within) field.bucket_entry[count++] = static_cast<std::uint16_t>(i);
+    }
   }
   field.bucket_begin[kBuckets] = count;
 }

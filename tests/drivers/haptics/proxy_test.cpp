@@ -45,8 +45,9 @@ TEST(field_sample, is_the_distance_within_its_proved_bound) {
     fine += here.spacing_mm < 1;
     const double h = 1e-4;
     const FieldSample next = sample(*field, at + h * Eigen::Vector3d::UnitY());
-    if (next.known && next.spacing_mm == here.spacing_mm && i % 10 == 0)
+    if (next.known && next.spacing_mm == here.spacing_mm && i % 10 == 0) {
       ASSERT_NEAR((next.distance_mm - here.distance_mm) / h, here.gradient.y(), 0.05);
+    }
   }
   EXPECT_GT(fine, 5000);
   EXPECT_FALSE(sample(*field, {100, 0, 0}).known);
