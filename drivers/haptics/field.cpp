@@ -124,29 +124,33 @@ double proved_still_mm(const HapticField& field, const Eigen::Vector3d& at_mm) {
 
 MovedNearest nearest_moved(const HapticField& field, const Eigen::Vector3d& at_mm, double part) {
   MovedNearest result;
-  if (!covers(field.coarse, at_mm)) return result;
+  const HapticBrick& brick = field.fine;
+  if (!covers(brick, at_mm)) return result;
   std::int32_t bucket = 0;
   for (int axis = 2; axis >= 0; --axis) {
-    const double along = (at_mm[axis] - field.coarse.origin_mm[axis]) / (field.coarse.spacing_mm * (field.coarse.count[axis] - 1));
+    const double along = (at_mm[axis] - brick.origin_mm[axis]) / (brick.spacing_mm * (brick.count[axis] - 1));
     bucket = bucket * kBucketSide + std::clamp(static_cast<std::int32_t>(along * kBucketSide), 0, kBucketSide - 1);
   }
   const std::uint32_t begin = field.bucket_begin[bucket], end = field.bucket_begin[bucket + 1];
   if (begin > end || end > static_cast<std::uint32_t>(kMaxBucketEntries) || end - begin > kMaxTrianglesRead) return result;
-  double best = field.moved_reach_mm * field.moved_reach_mm;
+  double best_mm = field.moved_reach_mm;
   for (std::uint32_t i = begin; i < end; ++i) {
     const std::uint16_t index = field.bucket_entry[i];
     if (index >= field.moved_count) return result;
     const MovedTriangle& triangle = field.moved[index];
-    const Eigen::Vector3d corners[3] = {corner_at(triangle, 0, part), corner_at(triangle, 1, part), corner_at(triangle, 2, part)};
-    if (!(corners[0] + corners[1] + corners[2]).allFinite()) return result;
-    const Eigen::Vector3d point = nearest_of_triangle(at_mm, corners[0], corners[1], corners[2]);
-    const double square = (point - at_mm).squaredNorm();
-    if (square >= best) continue;
-    best = square;
+    const Eigen::Vector3d first = corner_at(triangle, 0, part);
+    // Most triangles of a bucket are too far away; for what isn't a number this is false.
+    if ((first - at_mm).norm() - triangle.radius_mm >= best_mm) continue;
+    const Eigen::Vector3d second = corner_at(triangle, 1, part), third = corner_at(triangle, 2, part);
+    if (!(first + second + third).allFinite() || !(triangle.radius_mm >= 0)) return result;
+    const Eigen::Vector3d point = nearest_of_triangle(at_mm, first, second, third);
+    const double distance_mm = (point - at_mm).norm();
+    if (distance_mm >= best_mm) continue;
+    best_mm = distance_mm;
     result.point_mm = point;
   }
   result.known = true;
-  result.distance_mm = std::sqrt(best);
+  result.distance_mm = best_mm;
   return result;
 }
 

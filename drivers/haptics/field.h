@@ -32,7 +32,7 @@ double proved_still_mm(const HapticField& field, const Eigen::Vector3d& at_mm);
 
 /// The nearest point of the moved triangles at a time of their motion.
 struct MovedNearest {
-  bool known = false;                                  ///< false: outside of the buckets, or too many triangles in one
+  bool known = false;                                  ///< false: outside of the fine brick, or too many triangles in its bucket
   double distance_mm = 0;                              ///< the reach where no triangle is nearer
   Eigen::Vector3d point_mm = Eigen::Vector3d::Zero();  ///< only where distance_mm is less than the reach
 };

@@ -89,21 +89,24 @@ inline std::unique_ptr<HapticField> make_field(const Distance& distance, const F
   auto field = std::make_unique<HapticField>();
   field->number = 1;
   field->mesh_generation = 1;
-  field->moved_reach_mm = 1.5 * shape.coarse_mm;
+  field->moved_reach_mm = 2 * shape.fine_mm;
   fill_brick(field->fine, shape.centre_mm, shape.fine_mm, shape.fine_count, distance, [](const Eigen::Vector3d&) { return 1e3; });
   fill_brick(field->coarse, shape.centre_mm, shape.coarse_mm, shape.coarse_count, distance, [](const Eigen::Vector3d&) { return 1e3; });
   return field;
 }
 
-/// Enters triangles that move into a field whose coarse brick is filled. Both lists have the same order.
+/// Enters triangles that move into a field whose fine. Both lists have the same order.
 inline void enter_moved(HapticField& field, const Triangles& before, const Triangles& now) {
   field.moved_count = static_cast<std::int32_t>(now.size());
   field.max_moved_mm = 0;
   // Each triangle's range of buckets: the box about both places, grown by the reach.
   std::vector<std::array<int, 6>> ranges(now.size());
-  const double side = field.coarse.spacing_mm * (field.coarse.count[0] - 1) / kBucketSide;
+  const double side = field.fine.spacing_mm * (field.fine.count[0] - 1) / kBucketSide;
   for (std::size_t i = 0; i < now.size(); ++i) {
     Eigen::AlignedBox3d box;
+    double radius = 0;
+    for (const Triangle& t : {before[i], now[i]}) radius = std::max({radius, (t[1] - t[0]).norm(), (t[2] - t[0]).norm()});
+    field.moved[i].radius_mm = static_cast<float>(radius + 1e-3);
     for (int corner = 0; corner < 3; ++corner) {
       field.max_moved_mm = std::max(field.max_moved_mm, (now[i][corner] - before[i][corner]).norm() + 1e-4);
       box.extend(now[i][corner]);
@@ -115,7 +118,7 @@ inline void enter_moved(HapticField& field, const Triangles& before, const Trian
     }
     for (int axis = 0; axis < 3; ++axis) {
       const auto cell = [&](double mm) {
-        return std::clamp(static_cast<int>(std::floor((mm - field.coarse.origin_mm[axis]) / side)), -1, kBucketSide);
+        return std::clamp(static_cast<int>(std::floor((mm - field.fine.origin_mm[axis]) / side)), -1, kBucketSide);
       };
       ranges[i][axis] = std::max(0, cell(box.min()[axis] - field.moved_reach_mm));
       ranges[i][axis + 3] = std::min(kBucketSide - 1, cell(box.max()[axis] + field.moved_reach_mm));

@@ -43,9 +43,9 @@ class MovingShells {
   template <class DistanceOf, class StillOf>
   const HapticField& move_filled(const Triangles& now, const Eigen::Vector3d& pen_mm, const DistanceOf& distance_mm,
                                  const StillOf& still_mm) {
-    test::fill_brick(field_->fine, pen_mm, 0.4, 24, distance_mm, still_mm);
+    test::fill_brick(field_->fine, pen_mm, 0.4, 26, distance_mm, still_mm);
     test::fill_brick(field_->coarse, pen_mm, 1.5, 12, distance_mm, still_mm);
-    field_->moved_reach_mm = 1.5 * 1.5;
+    field_->moved_reach_mm = 2 * 0.4;
     ++field_->number;
     field_->before_generation = field_->mesh_generation++;
     before_ = std::exchange(shells_, now);
