@@ -124,11 +124,15 @@ SafetyFault Safety::take_pose(const SafetyInput& input) {
 }
 
 /// Work of the forces on the way that the hand went. Where several forces were sent on this way, it isn't known which part of the way each
-/// of them has seen: the most work into the hand counts.
+/// of them has seen: the most work into the hand counts. Where the last command has ended before this tick, the hand may have gone any part
+/// of the way with it: it gets no credit, and may have got work on as much of the way as it can go in that time.
 void Safety::account(const Eigen::Vector3d& moved_mm) {
   if (since_pose_count_ == 0) return;
-  double joule = since_pose_[0].dot(moved_mm) * 1e-3;
-  for (std::size_t i = 1; i < since_pose_count_; ++i) joule = std::max(joule, since_pose_[i].dot(moved_mm) * 1e-3);
+  Eigen::Vector3d way_mm = moved_mm;
+  if (lapsed_) way_mm = shortened(moved_mm, max_way_mm(last_ns_ + limits_.period_ns + limits_.late_ns));
+  double joule = since_pose_[0].dot(way_mm) * 1e-3;
+  for (std::size_t i = 1; i < since_pose_count_; ++i) joule = std::max(joule, since_pose_[i].dot(way_mm) * 1e-3);
+  if (lapsed_) joule = std::max(0.0, joule);
   if (joule <= 0) {
     credit_joule_ = std::min(limits_.max_credit_joule, credit_joule_ - joule);
   } else {

@@ -37,11 +37,6 @@ class HapticRig {
     HapticAnswer answer = loop.step(input);
     if (input.pen.fresh) pose = input.pen.pose;
     record(input, answer);
-    if (without_safety) {
-      // What the parts alone would do, for proofs that limits matter.
-      answer.command.newton.setZero();
-      for (const ForcePart& part : answer.parts) answer.command.newton += part.newton;
-    }
     pen.send(now, answer.command);
     return answer;
   }
@@ -64,7 +59,7 @@ class HapticRig {
   std::unique_ptr<HapticGuides> guides;
   std::unique_ptr<HapticResistance> resistance;
   Feel feel;
-  bool rearm = false, field_is_fresh = true, fresh_slots = true, without_safety = false;
+  bool rearm = false, field_is_fresh = true, fresh_slots = true;
   haptic_pen::PenPose pose;
   test::ForceChecker checker;
   bool kept = true;  ///< the checker found nothing

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 #include "drivers/haptics/safety.h"
 #include "tests/drivers/haptics/force_checker.h"
@@ -34,7 +35,7 @@ class QuickRandom {
   std::uint64_t state_;
 };
 
-enum class HandMode { spring, along, against, random, still, kCount };
+enum class HandMode { spring, along, against, random, still, count };
 
 /// Plays hand, device, loop and faults.
 class RandomLoop {
@@ -43,7 +44,7 @@ class RandomLoop {
 
   const test::RecordedTick& tick() {
     if (random_.one_in(500)) {
-      mode_ = static_cast<HandMode>(random_.next() % static_cast<int>(HandMode::kCount));
+      mode_ = static_cast<HandMode>(random_.next() % static_cast<int>(HandMode::count));
       strength_ = random_.between(0, random_.one_in(4) ? 30 : 3);
       speed_ = random_.vector(random_.one_in(20) ? 1.4 : 0.3);
     }
@@ -112,7 +113,7 @@ class RandomLoop {
       case HandMode::against: contact = -strength_ * direction; break;
       case HandMode::random: contact = random_.vector(strength_); break;
       case HandMode::still: contact = last_force_ + random_.vector(1); break;
-      case HandMode::kCount: break;
+      case HandMode::count: break;
     }
     // In free space now and then, so that arming succeeds.
     if (random_.one_in(400)) free_ticks_ = 300;
@@ -124,7 +125,7 @@ class RandomLoop {
     if (random_.one_in(5000)) field_stays_ = static_cast<int>(random_.next() % 400);
     parts_[0] = {contact, field_ns_, false};
     parts_[1] = {0.2 * contact.cross(Eigen::Vector3d::UnitX()), field_ns_, false};
-    parts_[2] = {-0.3 * velocity_, 0, true};
+    parts_[2] = {-1.5 * velocity_, 0, true};
     parts_[3] = {mode_ == HandMode::along ? random_.vector(0.1) : Eigen::Vector3d::Zero(), now_ns_ + (random_.one_in(1000) ? 3'000'000 : 0),
                  false};
   }

@@ -223,6 +223,14 @@ TEST(safety, a_late_tick_gives_damping_only) {
   EXPECT_NEAR(rig.tick().newton.x(), 0.2, 0.01) << "and rises again";
 }
 
+TEST(safety, a_force_whose_command_has_ended_rises_from_zero) {
+  SafetyRig rig;
+  rig.arm();
+  rig.parts = {{{2, 0, 0}, 0, true}};
+  EXPECT_NEAR(rig.run(50).newton.x(), 2, 1e-12);
+  EXPECT_NEAR(rig.tick(3 * kMs + 1).newton.x(), 0.4, 1e-12);
+}
+
 TEST(safety, a_command_holds_no_longer_than_a_late_tick) {
   SafetyRig rig;
   rig.arm();
@@ -407,6 +415,41 @@ TEST(safety, puts_no_more_work_into_the_hand_than_twenty_millijoules_at_once_and
     ASSERT_LE(joule, 0.020 + 0.050 * seconds);
   }
   EXPECT_GT(joule, 0.5 * (0.050 * seconds)) << "most of what is allowed is given";
+}
+
+TEST(safety, gives_no_credit_for_a_way_on_which_the_command_has_ended) {
+  SafetyRig rig;
+  rig.arm();
+  rig.want(1);
+  const double before = rig.run(50).tank_joule;
+  rig.input.position_mm.x() -= 2;
+  EXPECT_NEAR(rig.tick().tank_joule, before + 0.002, 1e-9) << "2 mm against 1 N";
+  rig.input.position_mm.x() -= 2;
+  EXPECT_NEAR(rig.tick(5 * kMs).tank_joule, before + 0.002, 1e-9);
+}
+
+TEST(safety, counts_work_only_up_to_the_end_of_a_command) {
+  SafetyRig rig;
+  rig.arm();
+  rig.want(1);
+  const double before = rig.run(50).tank_joule;
+  rig.input.position_mm.x() += 10;
+  // 1 mm and 3 ms at 1.5 m/s, less what is refilled in 10 ms.
+  EXPECT_NEAR(rig.tick(10 * kMs).tank_joule, before - 0.0055 + 0.0005, 1e-9);
+}
+
+TEST(safety, counts_the_worst_of_the_forces_since_the_last_pose) {
+  SafetyRig rig;
+  rig.arm();
+  rig.want(1);
+  const double before = rig.run(50).tank_joule;
+  rig.poses = false;
+  rig.tick();
+  rig.want(0.1);
+  rig.tick();
+  rig.poses = true;
+  rig.input.position_mm.x() += 3;
+  EXPECT_NEAR(rig.tick().tank_joule, before - 0.003 + 0.00005, 1e-9) << "not 0.1 N";
 }
 
 TEST(safety, gives_back_what_a_spring_took) {
