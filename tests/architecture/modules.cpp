@@ -44,6 +44,8 @@ const std::vector<Module>& modules() {
       {"drivers/eye_tracker/configured", {"drivers/eye_tracker/dynasight", "drivers/eye_tracker/opentrack"}},
       {"drivers/prism_servo", {"drivers/display", "drivers/eye_tracker"}},
       {"drivers/prism_servo/dynamixel", {"drivers/prism_servo", "drivers/settings"}},
+      {"drivers/haptic_pen", {"base"}},
+      {"drivers/haptics", {"drivers/haptic_pen"}},
 
       {"ipc/wire", {"base/json"}},
       {"ipc/device", {"ipc/wire", "drivers/prism_servo"}},
