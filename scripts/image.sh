@@ -1,10 +1,14 @@
 # `./station image` and `./station vm`. Sourced by ./station after steps.sh and package.sh.
 
 # The image's kernel has many drivers that no workstation with a graphics card and a disk needs.
-image_without="sound drivers/media drivers/infiniband drivers/staging drivers/iio drivers/isdn drivers/atm drivers/net/wireless
-  drivers/net/can drivers/net/hamradio drivers/bluetooth drivers/nfc drivers/target drivers/md drivers/scsi/qla2xxx drivers/scsi/lpfc net/bluetooth
-  net/mac80211 net/wireless net/sctp net/ceph net/openvswitch net/batman-adv net/netfilter fs/ceph fs/nfs fs/nfsd fs/ocfs2 fs/gfs2
-  fs/xfs fs/btrfs fs/f2fs fs/jfs fs/ntfs3 fs/cifs fs/afs fs/reiserfs fs/dlm"
+image_without="sound drivers/media drivers/infiniband drivers/staging drivers/iio drivers/isdn drivers/atm drivers/comedi drivers/mtd drivers/bluetooth
+  drivers/nfc drivers/target drivers/md drivers/net/wireless drivers/net/can drivers/net/hamradio drivers/net/fddi drivers/net/wwan
+  drivers/net/ethernet/mellanox drivers/net/ethernet/chelsio drivers/net/ethernet/qlogic drivers/net/ethernet/netronome
+  drivers/net/ethernet/cavium drivers/net/ethernet/emulex drivers/net/ethernet/huawei drivers/net/ethernet/cisco drivers/net/ethernet/brocade
+  drivers/net/ethernet/sfc drivers/net/ethernet/broadcom/bnx2x drivers/scsi/qla2xxx drivers/scsi/qla4xxx drivers/scsi/lpfc drivers/scsi/bfa
+  drivers/scsi/bnx2fc drivers/scsi/bnx2i drivers/scsi/csiostor drivers/scsi/be2iscsi drivers/scsi/aic7xxx drivers/scsi/aic94xx
+  net/bluetooth net/mac80211 net/wireless net/sctp net/ceph net/openvswitch net/batman-adv net/netfilter net/sunrpc net/tipc net/rds
+  fs/ceph fs/nfs fs/nfsd fs/ocfs2 fs/gfs2 fs/xfs fs/btrfs fs/f2fs fs/jfs fs/ntfs3 fs/cifs fs/smb fs/afs fs/reiserfs fs/dlm fs/orangefs"
 
 # build_base FOLDER: a Debian 12 without our packages, as FOLDER/base.tar. Kept for a week.
 build_base() {
