@@ -43,8 +43,12 @@ class Machine:
         self.process = subprocess.Popen(arguments, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
         threading.Thread(target=self._read_console, daemon=True).start()
         self.qmp = self._connect("qmp").makefile("rw")
-        self.qmp.readline()
-        self.command("qmp_capabilities")
+        try:
+            self.qmp.readline()
+            self.command("qmp_capabilities")
+        except OSError:
+            self.process.wait(10)
+            raise Gone("QEMU ended at once:\n" + "".join(self.console_text)) from None
         self.shell = self._connect("shell")
         self.said = b""
 
