@@ -10,6 +10,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "drivers/port/open_error.h"
 #include "drivers/port/open_port.h"
 #include "drivers/port/pty_pair.h"
 #include "tests/drivers/port/allocations.h"
@@ -174,6 +175,11 @@ TEST(OpenPort, reports_what_is_no_serial_line) {
   }
   EXPECT_FALSE(is_pseudo_terminal("/dev/null"));
   EXPECT_FALSE(is_pseudo_terminal("/dev/pts"));
+}
+
+TEST(OpenPort, tells_a_units_limits_from_a_files_rights) {
+  EXPECT_THAT(open_error("/dev/ttyUSB0", EPERM).text(), HasSubstr("/dev/ttyUSB0: systemd keeps this device from the program's unit"));
+  EXPECT_THAT(open_error("/dev/ttyUSB0", EACCES).text(), HasSubstr("/dev/ttyUSB0: this user may not open it"));
 }
 
 TEST(OpenPort, without_permission_says_how_to_get_it) {
