@@ -47,7 +47,9 @@ struct HapticBrick {
 struct MovedTriangle {
   float before_mm[3][3];  ///< corner, then x y z
   float now_mm[3][3];     ///< the same corners in `mesh_generation`
-  std::int32_t element;   ///< the mesh's index
+  float
+      radius_mm;  ///< no point of the triangle is farther from its first corner, at any time: the longer of the edges at it, in both places
+  std::int32_t element;  ///< the mesh's index
 };
 
 /// The shells near the pen. The fine brick covers the pen's position ± 10 mm, the coarse one where the pen can be 20 ms later (± 40 mm at
@@ -61,15 +63,15 @@ struct HapticField {
   std::uint64_t before_generation;  ///< the generation of `before_mm`; 0: unknown, or shells have appeared or disappeared
   HapticBrick fine, coarse;
 
-  /// Every triangle that moved since `before_generation` and at any time of its motion comes within `moved_reach_mm` of the coarse brick.
-  /// The reader uses them only if it has last read a field of `before_generation`; otherwise it lets go. So the writer should take for
+  double max_moved_mm;  ///< the longest way of any corner since before_generation, over all shells of the coarse brick; 0: none moved
+  /// Every triangle that moved since `before_generation` and at any time of its motion comes within `moved_reach_mm` of the fine brick. The
+  /// reader uses them only if it has last read a field of `before_generation`; otherwise it lets go. So the writer should take for
   /// `before_generation` the one that the reader has acquired last.
-  double max_moved_mm;       ///< the longest way of any corner, over all shells; 0: none moved
-  double moved_reach_mm;     ///< at least 1.5 * coarse.spacing_mm
+  double moved_reach_mm;     ///< at least 2 * fine.spacing_mm; more makes buckets fuller
   std::int32_t moved_count;  ///< at most kMaxMovedTriangles; if there are more, set before_generation = 0
   std::int32_t unused;
   MovedTriangle moved[kMaxMovedTriangles];
-  /// The coarse brick's box in 16 equal parts in each direction; bucket (x, y, z) has the index x + 16 * (y + 16 * z). Its entries are
+  /// The fine brick's box in 16 equal parts in each direction; bucket (x, y, z) has the index x + 16 * (y + 16 * z). Its entries are
   /// bucket_entry[bucket_begin[i]] to before bucket_begin[i + 1]: indices into `moved` of all triangles that at any time of their motion
   /// come within `moved_reach_mm` of the bucket's box. More are allowed: the box about both places, grown by the reach, is the usual test.
   std::uint32_t bucket_begin[kBuckets + 1];

@@ -13,8 +13,8 @@ namespace {
 
 using spatial::BoxTree;
 
-constexpr double kReachOfCoarse = 1.5;   ///< spacings of the coarse brick: base/haptic_field.h
-constexpr double kRoundingReach = 1e-4;  ///< the same; more than single precision loses
+constexpr double kMovedReachSpacings = 2;  ///< of the fine brick: base/haptic_field.h
+constexpr double kRoundingReach = 1e-4;    ///< the same; more than single precision loses
 
 struct Triangles {
   std::array<std::array<Vec3, 3>, 2> corner;
@@ -43,7 +43,7 @@ double max_moved(const BoxTree& before, const BoxTree& now) {
   return std::sqrt(max2);
 }
 
-/// The coarse brick in the pen's space, and what contains it in the model.
+/// A brick in the pen's space, and what contains it in the model.
 struct BrickBox {
   Vec3 low_mm, high_mm;
   Vec3 low, high;
@@ -84,35 +84,62 @@ bool corners_stay(const BoxTree& before, const BoxTree& now, const ShellSet& nea
   return std::all_of(near_before.begin(), near_before.end(), same) && std::all_of(near_now.begin(), near_now.end(), same);
 }
 
+/// Where a triangle is during its motion, grown by the reach: in a box, and between two planes parallel to its last place.
 struct MotionBox {
-  Vec3 low, high;
+  Vec3 low = Vec3::Constant(HUGE_VAL), high = Vec3::Constant(-HUGE_VAL);
+  Vec3 normal = Vec3::Zero();
+  double low_plane = 0, high_plane = 0;
 };
 
-/// Adds a moved triangle if its motion comes near the brick. Returns false if there is no room.
-bool add_moved(const std::array<Vec3, 3>& from, const std::array<Vec3, 3>& to, ShellIndex shell, const Placement& placement,
-               const BrickBox& box, HapticField& field, std::vector<MotionBox>& motions) {
+using Corners = std::array<Vec3, 3>;
+
+MotionBox motion_box(const Corners& from, const Corners& to, double reach_mm) {
+  MotionBox motion;
+  const Vec3 area = (to[1] - to[0]).cross(to[2] - to[0]);
+  if (area.norm() > 0) motion.normal = area.normalized();
+  motion.low_plane = HUGE_VAL;
+  motion.high_plane = -HUGE_VAL;
+  for (const Corners& corners : {from, to})
+    for (const Vec3& corner : corners) {
+      motion.low = motion.low.cwiseMin(corner);
+      motion.high = motion.high.cwiseMax(corner);
+      motion.low_plane = std::min(motion.low_plane, motion.normal.dot(corner));
+      motion.high_plane = std::max(motion.high_plane, motion.normal.dot(corner));
+    }
+  motion.low.array() -= reach_mm;
+  motion.high.array() += reach_mm;
+  motion.low_plane -= reach_mm;
+  motion.high_plane += reach_mm;
+  return motion;
+}
+
+MovedTriangle moved_triangle(const Corners& from, const Corners& to, ShellIndex shell) {
   MovedTriangle moved{};
-  MotionBox motion{Vec3::Constant(HUGE_VAL), Vec3::Constant(-HUGE_VAL)};
+  double radius = 0;
   for (std::size_t corner = 0; corner < 3; ++corner) {
-    const Vec3 before = placement.to_pen(from[corner]), now = placement.to_pen(to[corner]);
-    motion.low = motion.low.cwiseMin(before).cwiseMin(now);
-    motion.high = motion.high.cwiseMax(before).cwiseMax(now);
+    radius = std::max({radius, (from[corner] - from[0]).norm(), (to[corner] - to[0]).norm()});
     for (int axis = 0; axis < 3; ++axis) {
-      moved.before_mm[corner][axis] = static_cast<float>(before[axis]);
-      moved.now_mm[corner][axis] = static_cast<float>(now[axis]);
+      moved.before_mm[corner][axis] = static_cast<float>(from[corner][axis]);
+      moved.now_mm[corner][axis] = static_cast<float>(to[corner][axis]);
     }
   }
+  moved.radius_mm = spatial::rounded_up(radius + kRoundingReach);
   moved.element = static_cast<std::int32_t>(shell.value);
-  motion.low.array() -= field.moved_reach_mm + kRoundingReach;
-  motion.high.array() += field.moved_reach_mm + kRoundingReach;
+  return moved;
+}
+
+/// Adds a moved triangle, in the pen's space, if its motion comes near the brick. Returns false if there is no room.
+bool add_moved(const Corners& from, const Corners& to, ShellIndex shell, const BrickBox& box, HapticField& field,
+               std::vector<MotionBox>& motions) {
+  const MotionBox motion = motion_box(from, to, field.moved_reach_mm + kRoundingReach);
   if ((motion.low.array() > box.high_mm.array()).any() || (motion.high.array() < box.low_mm.array()).any()) return true;
   if (field.moved_count == kMaxMovedTriangles) return false;
-  field.moved[field.moved_count++] = moved;
+  field.moved[field.moved_count++] = moved_triangle(from, to, shell);
   motions.push_back(motion);
   return true;
 }
 
-/// Calls `visit(bucket)` for each bucket that a box meets.
+/// Calls `visit(bucket)` for each bucket that a motion may meet.
 template <class Visit>
 void each_bucket(const MotionBox& motion, const BrickBox& box, Visit&& visit) {
   const Vec3 size = (box.high_mm - box.low_mm) / kBucketSide;
@@ -124,9 +151,14 @@ void each_bucket(const MotionBox& motion, const BrickBox& box, Visit&& visit) {
     first[static_cast<std::size_t>(axis)] = bucket(motion.low[axis]);
     last[static_cast<std::size_t>(axis)] = bucket(motion.high[axis]);
   }
+  const double half = 0.5 * size.dot(motion.normal.cwiseAbs());
   for (int z = first[2]; z <= last[2]; ++z)
     for (int y = first[1]; y <= last[1]; ++y)
-      for (int x = first[0]; x <= last[0]; ++x) visit(static_cast<std::size_t>(x + kBucketSide * (y + kBucketSide * z)));
+      for (int x = first[0]; x <= last[0]; ++x) {
+        const double middle = motion.normal.dot(box.low_mm + size.cwiseProduct(Vec3(x + 0.5, y + 0.5, z + 0.5)));
+        if (middle + half < motion.low_plane || middle - half > motion.high_plane) continue;
+        visit(static_cast<std::size_t>(x + kBucketSide * (y + kBucketSide * z)));
+      }
 }
 
 /// Returns false if there is no room.
@@ -151,7 +183,7 @@ bool fill_buckets(const std::vector<MotionBox>& motions, const BrickBox& box, Ha
 void fill_unknown_motion(HapticField& field) {
   field.before_generation = 0;
   field.max_moved_mm = 0;
-  field.moved_reach_mm = kReachOfCoarse * field.coarse.spacing_mm;
+  field.moved_reach_mm = kMovedReachSpacings * field.fine.spacing_mm;
   field.moved_count = 0;
   std::fill(std::begin(field.bucket_begin), std::end(field.bucket_begin), 0U);
 }
@@ -160,7 +192,7 @@ ShellSet fill_moved(const BoxTree& before, const BoxTree& now, const Placement& 
                     HapticField& field) {
   fill_unknown_motion(field);
   const double way = max_moved(before, now);
-  const BrickBox box = box_of(field.coarse, placement);
+  const BrickBox box = box_of(field.coarse, placement), fine = box_of(field.fine, placement);
   // what passes the brick is no farther than its way from it in either state
   const double near = (std::max(field.moved_reach_mm, near_mm) + kRoundingReach) / placement.scale + way;
   const std::size_t max_shells = std::size_t{16} * kMaxMovedTriangles;
@@ -168,6 +200,7 @@ ShellSet fill_moved(const BoxTree& before, const BoxTree& now, const Placement& 
   if (near_now.size() > max_shells || near_before.size() > max_shells || !corners_stay(before, now, near_before, near_now)) return {};
   ShellSet shells;
   std::vector<MotionBox> motions;
+  double max_way_mm = 0;
   bool fits = true;
   for (const ShellIndex shell : near_now) {
     const Triangles from = triangles_of(before, shell), to = triangles_of(now, shell);
@@ -176,15 +209,21 @@ ShellSet fill_moved(const BoxTree& before, const BoxTree& now, const Placement& 
     for (std::size_t t = 0; t < 2 && fits; ++t) {
       if (!to.finite[t] || from.corner[t] == to.corner[t]) continue;
       moved = true;
-      fits = add_moved(from.corner[t], to.corner[t], shell, placement, box, field, motions);
+      Corners before_mm, now_mm;
+      for (std::size_t c = 0; c < 3; ++c) {
+        before_mm[c] = placement.to_pen(from.corner[t][c]);
+        now_mm[c] = placement.to_pen(to.corner[t][c]);
+        max_way_mm = std::max(max_way_mm, (now_mm[c] - before_mm[c]).norm());
+      }
+      fits = add_moved(before_mm, now_mm, shell, fine, field, motions);
     }
     if (moved) shells.push_back(shell);
   }
-  if (!fits || !fill_buckets(motions, box, field)) {
+  if (!fits || !fill_buckets(motions, fine, field)) {
     fill_unknown_motion(field);
     return {};
   }
-  field.max_moved_mm = way * placement.scale;
+  field.max_moved_mm = max_way_mm;
   field.before_generation = before_generation;
   return shells;
 }

@@ -9,12 +9,12 @@
 
 namespace prismesh::mesh::field {
 
-/// Fills the part of the field about moved triangles: those that at any time of their straight motion may come within
-/// `coarse.spacing_mm` * 1.5 of the coarse brick, and the buckets that name them, ascending by element. Sets `before_generation` to the
-/// given one; to 0, with no triangle, if shells near the brick were added, removed or got other corners, if a triangle there has become
-/// finite or has ceased to be, if more than kMaxMovedTriangles moved or their entries exceed kMaxBucketEntries. Then the reader lets go.
+/// Fills the part of the field about moved triangles: those that at any time of their straight motion may come within two spacings of the
+/// fine brick, ascending by element, and the buckets that name them. Sets `before_generation` to the given one; to 0, with no triangle, if
+/// shells near the coarse brick were added, removed or got other corners, if a triangle there has become finite or has ceased to be, if
+/// more than kMaxMovedTriangles moved or their entries exceed kMaxBucketEntries. Then the reader lets go.
 /// Returns the shells within `near_mm` of the coarse brick that moved, and those that do at any time of their motion; empty with a
-/// `before_generation` of 0. Preconditions: the coarse brick is placed; both trees are of one model; `before_generation` isn't 0.
+/// `before_generation` of 0. Preconditions: both bricks are placed; both trees are of one model; `before_generation` isn't 0.
 ShellSet fill_moved(const spatial::BoxTree& before, const spatial::BoxTree& now, const Placement& placement,
                     std::uint64_t before_generation, double near_mm, HapticField& field);
 /// The same without an earlier generation: the reader lets go.

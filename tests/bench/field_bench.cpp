@@ -13,8 +13,10 @@
 #include "mesh/spatial/closest_point.h"
 #include "tests/support/whole_model.h"
 
-namespace prismesh::mesh {
+namespace prismesh::mesh::field {
 namespace {
+
+double height(double x, double y) { return 300 * std::sin(x / 800) * std::cos(y / 900); }
 
 /// Two curved, jittered layers of quads of 5 mm, 8 mm apart, `shells` in all.
 Model layers(std::size_t shells) {
@@ -30,8 +32,7 @@ Model layers(std::size_t shells) {
       for (std::size_t i = 0; i < stride; ++i) {
         const double x = 5.0 * static_cast<double>(i), y = 5.0 * static_cast<double>(j);
         m.positions.set((layer * stride + j) * stride + i,
-                        Vec3(x + 1.5 * jitter(), y + 1.5 * jitter(),
-                             300 * std::sin(x / 800) * std::cos(y / 900) + jitter() + 8.0 * static_cast<double>(layer)));
+                        Vec3(x + 1.5 * jitter(), y + 1.5 * jitter(), height(x, y) + jitter() + 8.0 * static_cast<double>(layer)));
       }
   for (std::size_t layer = 0; layer < 2; ++layer)
     for (std::size_t j = 0; j < side; ++j)
@@ -126,19 +127,24 @@ BENCHMARK_CAPTURE(pairs_anywhere, threefold, 3.0)->Apply(sizes)->Unit(benchmark:
 BENCHMARK_CAPTURE(pairs_anywhere, a_third, 0.3)->Apply(sizes)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(pairs_anywhere, a_tenth, 0.1)->Apply(sizes)->Unit(benchmark::kMillisecond);
 
-/// Pairs of bricks, 200 a second, of a pen that moves to and fro along the surface at a speed in mm/s; blocks are taken over.
+/// Pairs of bricks, 200 a second, of a pen that moves to and fro, 3 mm of the model over the surface, at a speed in mm/s; blocks are taken
+/// over.
 void pairs_on_the_way(benchmark::State& state, double scale, double speed) {
   const Model& model = model_of(state);
   const spatial::BoxTree& tree = tree_of(state);
   const field::Placement placement = life_times(scale);
   Bricks bricks = two_bricks(), before = two_bricks();
-  Vec3 pen = placement.to_pen(pen_at(model, 0));
-  field::fill_bricks(tree, placement, pen, *before[0], *before[1]);
-  Vec3 step = speed / 200 * Vec3(0.8, 0.55, 0.24).normalized();
+  const double way = speed / 200 / scale;  // of a step, in the model
+  const Vec3& start = model.positions[model.node_count() / 5];
+  double x = start.x() + 40, y = start.y() + 40, sign = 1;
+  const auto pen_mm = [&] { return placement.to_pen(Vec3(x, y, height(x, y) + 3)); };
+  field::fill_bricks(tree, placement, pen_mm(), *before[0], *before[1]);
   int steps = 0;
   for (auto _ : state) {
-    if (++steps % 40 == 0) step = -step;
-    pen += step;
+    if (++steps % 20 == 0) sign = -sign;
+    x += sign * 0.8 * way;
+    y += sign * 0.6 * way;
+    const Vec3 pen = pen_mm();
     field::fill_bricks(tree, placement, pen, *bricks[0], *bricks[1], {before[0].get(), {}}, {before[1].get(), {}});
     std::swap(bricks, before);
   }
@@ -170,4 +176,4 @@ BENCHMARK(closest_of_shell_tree)
     ->Unit(benchmark::kMicrosecond);
 
 }  // namespace
-}  // namespace prismesh::mesh
+}  // namespace prismesh::mesh::field

@@ -69,9 +69,15 @@ void expect_lipschitz(const HapticBrick& brick) {
       for (int x = 0; x < brick.count[0]; ++x) {
         const float here = brick.distance_mm[index(brick, x, y, z)];
         ASSERT_TRUE(std::isfinite(here) && here >= 0);
-        if (x > 0) ASSERT_LE(std::abs(here - brick.distance_mm[index(brick, x - 1, y, z)]), max);
-        if (y > 0) ASSERT_LE(std::abs(here - brick.distance_mm[index(brick, x, y - 1, z)]), max);
-        if (z > 0) ASSERT_LE(std::abs(here - brick.distance_mm[index(brick, x, y, z - 1)]), max);
+        if (x > 0) {
+          ASSERT_LE(std::abs(here - brick.distance_mm[index(brick, x - 1, y, z)]), max);
+        }
+        if (y > 0) {
+          ASSERT_LE(std::abs(here - brick.distance_mm[index(brick, x, y - 1, z)]), max);
+        }
+        if (z > 0) {
+          ASSERT_LE(std::abs(here - brick.distance_mm[index(brick, x, y, z - 1)]), max);
+        }
       }
 }
 

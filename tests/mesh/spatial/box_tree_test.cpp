@@ -81,8 +81,12 @@ void expect_neighbours_of(const Model& model, const BoxTree& tree, double distan
         continue;
       }
       const double away = std::sqrt(gap2(boxes[s], from));
-      if (away <= distance) EXPECT_TRUE(found.contains(static_cast<std::uint32_t>(s))) << s;
-      if (away > distance * 1.00001 + 1e-5) EXPECT_FALSE(found.contains(static_cast<std::uint32_t>(s))) << s;
+      if (away <= distance) {
+        EXPECT_TRUE(found.contains(static_cast<std::uint32_t>(s))) << s;
+      }
+      if (away > distance * 1.00001 + 1e-5) {
+        EXPECT_FALSE(found.contains(static_cast<std::uint32_t>(s))) << s;
+      }
     }
   }
   std::set<std::pair<std::uint32_t, std::uint32_t>> pairs;
@@ -94,8 +98,12 @@ void expect_neighbours_of(const Model& model, const BoxTree& tree, double distan
     for (std::uint32_t b = a + 1; b < count; ++b) {
       if (boxes[a].empty() || boxes[b].empty()) continue;
       const double away = std::sqrt(gap2(boxes[a], boxes[b]));
-      if (away <= distance) ASSERT_TRUE(pairs.contains({a, b})) << a << ' ' << b;
-      if (away > distance * 1.00001 + 1e-5) ASSERT_FALSE(pairs.contains({a, b})) << a << ' ' << b;
+      if (away <= distance) {
+        ASSERT_TRUE(pairs.contains({a, b})) << a << ' ' << b;
+      }
+      if (away > distance * 1.00001 + 1e-5) {
+        ASSERT_FALSE(pairs.contains({a, b})) << a << ' ' << b;
+      }
     }
 }
 
@@ -137,7 +145,9 @@ TEST(BoxTreeTest, works_with_few_shells_and_none) {
     EXPECT_EQ(tree.shell_count(), static_cast<std::size_t>(n));
     EXPECT_EQ(tree.empty(), n == 0);
     if (n > 0) expect_tree_of(model, tree, 3);
-    if (n == 0) EXPECT_FALSE(tree.closest(Vec3::Zero()));
+    if (n == 0) {
+      EXPECT_FALSE(tree.closest(Vec3::Zero()));
+    }
   }
   BoxTree never;
   EXPECT_FALSE(never.closest(Vec3::Zero()));
