@@ -270,6 +270,23 @@ TEST(BoxTreeTest, says_what_changed) {
   EXPECT_EQ(removed.changed.high[0], 1.0F);
 }
 
+TEST(BoxTreeTest, leaves_out_shells) {
+  const Model model = test::folded_sheet();
+  BoxTree tree(model);
+  ShellSet some;
+  for (std::size_t s = 0; s < model.shell_count(); s += 3) some.emplace_back(s);
+  tree.leave_out(some);
+  tree.leave_out(some);
+  Model without = model;
+  for (const ShellIndex shell : some) remove_shell(without, shell);
+  EXPECT_EQ(tree.shell_count(), live_shells(without));
+  expect_answers_of(without, tree, 60, 2);
+  ShellSet all = test::all_shells(model);
+  tree.leave_out(all);
+  EXPECT_TRUE(tree.empty());
+  EXPECT_FALSE(tree.closest(Vec3(1, 1, 0)));
+}
+
 TEST(BoxTreeTest, is_built_anew_after_many_additions) {
   std::mt19937 random(3);
   Model model = test::with_adjacency(test::folded_sheet());
