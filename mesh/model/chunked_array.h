@@ -13,15 +13,15 @@
 
 namespace prismesh::mesh {
 
-inline constexpr std::size_t kChunkSize = 4096;  ///< elements of a chunk, whatever their type
+inline constexpr std::size_t kChunkSize = 4096;  ///< elements of a chunk, whatever their type, unless an array says otherwise
 
 /// Copying costs a pointer a chunk; writing to a shared chunk copies that chunk first. Reading is safe from any number of
 /// threads; writing to distinct chunks of one array from several threads is safe after `own_chunk` of each.
 /// A chunk's address stands for its content as long as any array holds it: equal addresses mean equal content.
-template <class T>
+template <class T, std::size_t kSize = kChunkSize>
 class ChunkedArray {
  public:
-  using Chunk = std::array<T, kChunkSize>;
+  using Chunk = std::array<T, kSize>;
 
   ChunkedArray() = default;
   explicit ChunkedArray(std::size_t size, const T& value = T()) { resize(size, value); }
@@ -33,7 +33,7 @@ class ChunkedArray {
     if (size == 0) return array;
     const auto chunk = std::make_shared<Chunk>();
     chunk->fill(value);
-    array.chunks_.assign((size + kChunkSize - 1) / kChunkSize, chunk);
+    array.chunks_.assign((size + kSize - 1) / kSize, chunk);
     array.size_ = size;
     return array;
   }
@@ -42,10 +42,10 @@ class ChunkedArray {
   bool empty() const { return size_ == 0; }
   std::size_t chunk_count() const { return chunks_.size(); }
 
-  const T& operator[](std::size_t i) const { return (*chunks_[i / kChunkSize])[i % kChunkSize]; }
+  const T& operator[](std::size_t i) const { return (*chunks_[i / kSize])[i % kSize]; }
 
   /// The used elements of a chunk.
-  std::span<const T> chunk(std::size_t c) const { return {chunks_[c]->data(), std::min(kChunkSize, size_ - c * kChunkSize)}; }
+  std::span<const T> chunk(std::size_t c) const { return {chunks_[c]->data(), std::min(kSize, size_ - c * kSize)}; }
   /// The owner of a chunk. While it lives, the chunk's address stands for its content.
   const std::shared_ptr<Chunk>& chunk_owner(std::size_t c) const { return chunks_[c]; }
   bool shares_chunk(const ChunkedArray& other, std::size_t c) const {
@@ -55,11 +55,11 @@ class ChunkedArray {
   /// The chunk for writing, copied first if another array shares it.
   std::span<T> own_chunk(std::size_t c) {
     if (chunks_[c].use_count() > 1) chunks_[c] = std::make_shared<Chunk>(*chunks_[c]);
-    return {chunks_[c]->data(), std::min(kChunkSize, size_ - c * kChunkSize)};
+    return {chunks_[c]->data(), std::min(kSize, size_ - c * kSize)};
   }
   /// Sets the size without content: every chunk must be set by `put_chunk` before any other call, distinct chunks from any thread.
   void reset(std::size_t size) {
-    chunks_.assign((size + kChunkSize - 1) / kChunkSize, nullptr);
+    chunks_.assign((size + kSize - 1) / kSize, nullptr);
     size_ = size;
   }
   /// Sets a chunk, and returns it for writing.
@@ -67,17 +67,17 @@ class ChunkedArray {
     chunks_[c] = std::move(chunk);
     return own_chunk(c);
   }
-  void set(std::size_t i, const T& value) { own_chunk(i / kChunkSize)[i % kChunkSize] = value; }
+  void set(std::size_t i, const T& value) { own_chunk(i / kSize)[i % kSize] = value; }
 
   /// New elements get `value`.
   void resize(std::size_t size, const T& value = T()) {
     const std::size_t old = size_;
-    if (size > old && old % kChunkSize != 0) {
-      size_ = std::min(size, (old / kChunkSize + 1) * kChunkSize);
-      std::span<T> last = own_chunk(old / kChunkSize);
-      std::fill(last.begin() + static_cast<std::ptrdiff_t>(old % kChunkSize), last.end(), value);
+    if (size > old && old % kSize != 0) {
+      size_ = std::min(size, (old / kSize + 1) * kSize);
+      std::span<T> last = own_chunk(old / kSize);
+      std::fill(last.begin() + static_cast<std::ptrdiff_t>(old % kSize), last.end(), value);
     }
-    chunks_.resize((size + kChunkSize - 1) / kChunkSize);
+    chunks_.resize((size + kSize - 1) / kSize);
     for (auto& chunk : chunks_)
       if (!chunk) {
         chunk = std::make_shared<Chunk>();

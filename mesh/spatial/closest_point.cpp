@@ -4,9 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include <Eigen/Geometry>
-
 #include "base/parallel_for.h"
+#include "mesh/spatial/point_triangle.h"
 
 namespace prismesh::mesh::spatial {
 
@@ -15,47 +14,6 @@ namespace {
 constexpr std::uint32_t kLeafTriangles = 4;
 constexpr std::size_t kTreesAtOnce = 64;
 constexpr std::size_t kTrianglesAtOnce = 16384;
-constexpr double kSliver2 = 1e-16;  ///< square of the height, as a share of the length, below which a triangle counts as its sides
-
-struct OnTriangle {
-  Vec3 point;
-  std::array<double, 3> share;
-  double distance2 = 0;  ///< from the query point
-};
-
-/// By the Voronoi regions of corners, sides and face: [Ericson 2005], "Real-Time Collision Detection", 5.1.5. Of a degenerate triangle the
-/// result lies on a side.
-OnTriangle closest_on(const std::array<Vec3, 3>& t, const Vec3& p) {
-  const Vec3 ab = t[1] - t[0];
-  const Vec3 ac = t[2] - t[0];
-  const auto on_side = [&](int i, int j) {
-    const Vec3 along = t[j] - t[i];
-    const double length2 = along.squaredNorm();
-    const double s = length2 > 0 ? std::clamp((p - t[i]).dot(along) / length2, 0.0, 1.0) : 0.0;
-    OnTriangle on{t[i] + s * along, {}, 0};
-    on.share[static_cast<std::size_t>(i)] = 1 - s;
-    on.share[static_cast<std::size_t>(j)] = s;
-    on.distance2 = (on.point - p).squaredNorm();
-    return on;
-  };
-  const Vec3 normal = ab.cross(ac);
-  const double area2 = normal.squaredNorm();
-  if (area2 > kSliver2 * ab.squaredNorm() * ac.squaredNorm()) {
-    const Vec3 ap = p - t[0];
-    const double v = ap.cross(ac).dot(normal) / area2;
-    const double w = ab.cross(ap).dot(normal) / area2;
-    if (v >= 0 && w >= 0 && v + w <= 1) {
-      const Vec3 foot = t[0] + v * ab + w * ac;
-      return {foot, {1 - v - w, v, w}, (foot - p).squaredNorm()};
-    }
-  }
-  OnTriangle best = on_side(0, 1);
-  for (const auto& [i, j] : {std::pair(1, 2), std::pair(2, 0)}) {
-    const OnTriangle other = on_side(i, j);
-    if (other.distance2 < best.distance2) best = other;
-  }
-  return best;
-}
 
 /// The square and a little more, so that a distance is within itself in spite of rounding; -1 for a negative radius.
 double square(double radius) { return radius >= 0 ? radius * radius * (1 + 1e-15) : -1.0; }
@@ -231,7 +189,7 @@ std::optional<SurfacePoint> ShellTree::closest(const Vec3& point, double radius)
   std::optional<SurfacePoint> best;
   double min_distance2 = square(radius);
   walk(point, min_distance2, [&](const Triangle& triangle) {
-    const OnTriangle on = closest_on(triangle.corner, point);
+    const OnTriangle on = closest_on_triangle(triangle.corner, point);
     const bool nearer = on.distance2 < min_distance2 || (on.distance2 == min_distance2 && (!best || triangle.shell < best->shell));
     if (!nearer) return;
     min_distance2 = on.distance2;
@@ -245,7 +203,7 @@ double ShellTree::distance(const Vec3& point, Vec3& near) const {
   double min_distance2 = from_near2 * (1 + 1e-12);  // so that the triangle of `near` is tested as well
   bool found = false;
   walk(point, min_distance2, [&](const Triangle& triangle) {
-    const OnTriangle on = closest_on(triangle.corner, point);
+    const OnTriangle on = closest_on_triangle(triangle.corner, point);
     if (!(on.distance2 < min_distance2)) return;
     min_distance2 = on.distance2;
     near = on.point;
@@ -258,7 +216,7 @@ std::vector<SurfacePoint> ShellTree::within(const Vec3& point, double radius) co
   std::vector<SurfacePoint> found;
   double radius2 = square(radius);
   walk(point, radius2, [&](const Triangle& triangle) {
-    const OnTriangle on = closest_on(triangle.corner, point);
+    const OnTriangle on = closest_on_triangle(triangle.corner, point);
     if (on.distance2 <= radius2) found.push_back(surface_point(triangle.shell, triangle.second, on));
   });
   std::sort(found.begin(), found.end(),

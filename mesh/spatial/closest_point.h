@@ -9,15 +9,9 @@
 
 #include "mesh/model/model.h"
 #include "mesh/model/node_set.h"
+#include "mesh/spatial/surface_point.h"
 
 namespace prismesh::mesh::spatial {
-
-struct SurfacePoint {
-  ShellIndex shell;
-  Vec3 point = Vec3::Zero();
-  double distance = 0;
-  std::array<double, 4> share{};  ///< of the shell's corners, 0..1, sum 1: point = sum of share * corner; a triangle's last is 0
-};
 
 /// A tree of axis-aligned boxes. A quad counts as the two triangles at its diagonal from the first corner to the third. Positions are those
 /// at construction; a triangle with a corner that isn't finite is left out. Of equally close shells the first counts. Some 220 bytes a

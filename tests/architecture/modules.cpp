@@ -27,6 +27,7 @@ const std::vector<Module>& modules() {
       {"mesh/deck/sample", {"mesh/model"}},
       {"mesh/deck", {"mesh/deck/editing", "mesh/deck/sample"}},
       {"mesh/spatial", {"mesh/model"}},
+      {"mesh/field", {"mesh/spatial"}},
       {"mesh/quality", {"mesh/model"}},
       {"mesh/connections", {"mesh/quality", "mesh/spatial"}},
       {"mesh/select", {"mesh/connections"}},
