@@ -70,8 +70,10 @@ std::string advice(const std::string& path, int error) {
     case ENOENT:
     case ENODEV:
     case ENXIO: return "there is no such device; is it plugged in and switched on? " + plugged_in_devices();
-    case EPERM:  // not of the file's rights: systemd keeps devices from a unit by the kernel driver's number, which it looks up at the start
-      return "systemd keeps this device from the program's unit: start the unit again now that the device's driver is there (sudo systemctl "
+    case EPERM:  // not of the file's rights: systemd keeps devices from a unit by the kernel driver's number, which it looks up at the
+                 // start
+      return "systemd keeps this device from the program's unit: start the unit again now that the device's driver is there (sudo "
+             "systemctl "
              "restart prismesh-deviced), or allow it there (DeviceAllow=)";
     case EACCES: {
       const std::string group = group_of(path);
