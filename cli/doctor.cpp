@@ -39,6 +39,7 @@ std::vector<Finding> all_findings(const DoctorOptions& options) {
   const auto add = [&](std::vector<Finding> more) { std::move(more.begin(), more.end(), std::back_inserter(all)); };
   add(check_displays(machine));
   add(check_graphics(machine));
+  add(check_seat(machine));
   const Result<drivers::settings::StationSettings> settings = drivers::settings::read_settings(std::nullopt);
   if (settings)
     add(check_ports(machine, *settings));

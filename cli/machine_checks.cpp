@@ -130,6 +130,14 @@ std::vector<Finding> check_graphics(const Machine& machine) {
   return findings;
 }
 
+std::vector<Finding> check_seat(const Machine& machine) {
+  std::error_code error;
+  if (fs::exists(below(machine, "/run/seatd.sock"), error)) return {{"screen", Grade::good, "seatd gives it to the kiosk"}};
+  if (machine.in_x11) return {{"screen", Grade::note, "this X11 session has it; without one the kiosk needs seatd", "apt install seatd"}};
+  return {{"screen", Grade::bad, "nothing gives the bare screen to the kiosk: seatd doesn't run",
+           "apt install seatd; systemctl enable --now seatd"}};
+}
+
 std::vector<Finding> check_ports(const Machine& machine, const drivers::settings::StationSettings& settings) {
   std::vector<Finding> findings;
   const auto& tracker = settings.eye_tracker;

@@ -40,6 +40,8 @@ Machine this_machine(const std::filesystem::path& state_directory);
 
 std::vector<Finding> check_displays(const Machine& machine);
 std::vector<Finding> check_graphics(const Machine& machine);
+/// Who gives the bare screen to the kiosk.
+std::vector<Finding> check_seat(const Machine& machine);
 /// Ports of real devices, and what is simulated.
 std::vector<Finding> check_ports(const Machine& machine, const drivers::settings::StationSettings& settings);
 std::vector<Finding> check_realtime(const Machine& machine);

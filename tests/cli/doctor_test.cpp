@@ -54,6 +54,14 @@ std::string edid_block() {
   return block;
 }
 
+TEST_F(DoctorTest, wants_a_seat_manager_on_the_bare_screen) {
+  EXPECT_THAT(grades(check_seat(machine_)), ElementsAre(Grade::bad));
+  machine_.in_x11 = true;
+  EXPECT_THAT(grades(check_seat(machine_)), ElementsAre(Grade::note));
+  put("run/seatd.sock");
+  EXPECT_THAT(grades(check_seat(machine_)), ElementsAre(Grade::good));
+}
+
 TEST_F(DoctorTest, names_a_monitor_and_demands_its_native_mode) {
   put("sys/class/drm/card0-DP-1/status", "connected\n");
   put("sys/class/drm/card0-DP-1/modes", "1920x1080\n1280x720\n");
