@@ -18,15 +18,15 @@
 namespace prismesh::kiosk::display::kms {
 namespace {
 
-template <auto free>
+template <auto Free>
 struct FreeWith {
   template <class T>
   void operator()(T* made) const {
-    free(made);
+    Free(made);
   }
 };
-template <class T, auto free>
-using DrmData = std::unique_ptr<T, FreeWith<free>>;
+template <class T, auto Free>
+using DrmData = std::unique_ptr<T, FreeWith<Free>>;
 
 using Resources = DrmData<drmModeRes, drmModeFreeResources>;
 using PlaneResources = DrmData<drmModePlaneRes, drmModeFreePlaneResources>;
@@ -179,7 +179,7 @@ int DrmCard::commit(const Change& change) {
   if (change.only_test) flags |= DRM_MODE_ATOMIC_TEST_ONLY;
   if (change.flip_token && !change.only_test) flags |= DRM_MODE_PAGE_FLIP_EVENT | DRM_MODE_ATOMIC_NONBLOCK;
   // The kernel gives this pointer back with the event, and doesn't read what it points to.
-  void* token = reinterpret_cast<void*>(static_cast<std::uintptr_t>(change.flip_token.value_or(0)));
+  void* token = reinterpret_cast<void*>(static_cast<std::uintptr_t>(change.flip_token.value_or(0)));  // NOLINT(performance-no-int-to-ptr)
   return -drmModeAtomicCommit(descriptor_, request.get(), flags, token);
 }
 

@@ -164,7 +164,7 @@ Result<ObjectId> GbmScanout::swap() {
   }
   gbm_bo* buffer = gbm_surface_lock_front_buffer(pictures_->memory);
   if (buffer == nullptr) return fail(name_, "the graphics card has no memory left for the next picture");
-  const Result<ObjectId> framebuffer = framebuffer_of(buffer);
+  Result<ObjectId> framebuffer = framebuffer_of(buffer);
   if (!framebuffer) {
     gbm_surface_release_buffer(pictures_->memory, buffer);
     return framebuffer;
