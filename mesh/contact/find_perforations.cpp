@@ -6,6 +6,8 @@
 #include <tuple>
 #include <utility>
 
+#include "mesh/contact/sort_unique.h"
+
 namespace prismesh::mesh::contact {
 
 namespace {
@@ -94,15 +96,12 @@ class Regions {
 
 auto coordinates(const CurveSegment& s) { return std::tuple(s.from.x(), s.from.y(), s.from.z(), s.to.x(), s.to.y(), s.to.z()); }
 
-void make_unique(std::vector<ShellIndex>& shells) {
-  std::sort(shells.begin(), shells.end());
-  shells.erase(std::unique(shells.begin(), shells.end()), shells.end());
-}
-
 /// Counts a segment once that several pairs of shells have.
 void finish(Perforation& region) {
-  make_unique(region.shells_a);
-  make_unique(region.shells_b);
+  std::sort(region.crossings.begin(), region.crossings.end());
+  for (const auto& [a, b] : region.crossings) region.shells_a.push_back(a), region.shells_b.push_back(b);
+  sort_unique(region.shells_a);
+  sort_unique(region.shells_b);
   for (CurveSegment& s : region.curve)
     if (std::tuple(s.to.x(), s.to.y(), s.to.z()) < std::tuple(s.from.x(), s.from.y(), s.from.z())) std::swap(s.from, s.to);
   const auto less = [](const CurveSegment& x, const CurveSegment& y) { return coordinates(x) < coordinates(y); };
@@ -128,11 +127,10 @@ std::vector<Perforation> group_crossings(const Model& model, const std::vector<S
     const auto [root, swapped] = regions.root(static_cast<std::uint32_t>(p));
     if (root == p) {
       of_root[p] = static_cast<std::uint32_t>(found.size());
-      found.push_back({pairs[p].part_a, pairs[p].part_b, {}, {}, {}, 0});
+      found.push_back({pairs[p].part_a, pairs[p].part_b, {}, {}, {}, {}, 0});
     }
     Perforation& region = found[of_root[root]];
-    (swapped ? region.shells_b : region.shells_a).push_back(pairs[p].a);
-    (swapped ? region.shells_a : region.shells_b).push_back(pairs[p].b);
+    region.crossings.emplace_back(swapped ? pairs[p].b : pairs[p].a, swapped ? pairs[p].a : pairs[p].b);
     region.curve.insert(region.curve.end(), crossings[p].segments.begin(), crossings[p].segments.end());
   }
   for (Perforation& region : found) finish(region);

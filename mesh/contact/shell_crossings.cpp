@@ -17,8 +17,6 @@ namespace {
 
 constexpr std::size_t kCrossingGrain = 1024;
 
-using Sides = std::array<double, 3>;
-
 bool on_one_side(const Sides& sides) {
   return (sides[0] > 0 && sides[1] > 0 && sides[2] > 0) || (sides[0] < 0 && sides[1] < 0 && sides[2] < 0);
 }

@@ -10,8 +10,6 @@ namespace prismesh::mesh::contact {
 
 namespace {
 
-using Sides = std::array<double, 3>;
-
 bool straddles(const Sides& sides) {
   return *std::min_element(sides.begin(), sides.end()) < 0 && *std::max_element(sides.begin(), sides.end()) > 0;
 }
@@ -67,7 +65,7 @@ bool inside_angle(const Vec3& from, const Vec3& to, const Vec3& begin, const Vec
 
 }  // namespace
 
-std::array<double, 3> sides_of(const Triangle& other, const Triangle& triangle) {
+Sides sides_of(const Triangle& other, const Triangle& triangle) {
   Sides sides{};
   for (std::size_t i = 0; i < 3; ++i) sides[i] = orientation(other[0], other[1], other[2], triangle[i]);
   return sides;
@@ -113,6 +111,28 @@ std::optional<CurveSegment> shared_part(const CurveSegment& a, const CurveSegmen
   const CurveSegment shared{is_before(one.from, other.from) ? other.from : one.from, is_before(one.to, other.to) ? one.to : other.to};
   if (!is_before(shared.from, shared.to)) return std::nullopt;
   return shared;
+}
+
+bool lies_in(const Vec3& point, const Triangle& t) {
+  if (orientation(t[0], t[1], t[2], point) != 0) return false;
+  const std::size_t axis = best_axis(t);
+  bool left = false, right = false;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double side = orientation_without(axis, t[i], t[(i + 1) % 3], point);
+    left |= side > 0, right |= side < 0;
+  }
+  return !left || !right;
+}
+
+bool passes_through(const Vec3& from, const Vec3& to, const Triangle& t) {
+  const double begin = orientation(t[0], t[1], t[2], from), end = orientation(t[0], t[1], t[2], to);
+  if (!((begin < 0 && end > 0) || (begin > 0 && end < 0))) return false;
+  bool left = false, right = false;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double side = orientation(from, to, t[i], t[(i + 1) % 3]);
+    left |= side > 0, right |= side < 0;
+  }
+  return !left || !right;
 }
 
 bool alternate(const Vec3& from, const Vec3& to, const HalfPlanes& a, const HalfPlanes& b) {

@@ -17,15 +17,17 @@ struct CurveSegment {
   double length() const { return (to - from).norm(); }
 };
 
-/// For each corner of `triangle`: above 0, 0, below 0 as it lies on, in or below the plane of `other`, exactly.
-std::array<double, 3> sides_of(const Triangle& other, const Triangle& triangle);
+/// For each corner of a triangle a number above 0, 0, or below 0: it lies above, in, or below the plane of another one.
+using Sides = std::array<double, 3>;
+
+/// The sides on which the corners of `triangle` lie, exactly.
+Sides sides_of(const Triangle& other, const Triangle& triangle);
 
 /// Returns the segment along which the insides of both triangles cross: each has corners on both sides of the other's plane, and the two
 /// share more than a point of the planes' line. Touching, a side in the other's plane, and overlap in one plane don't count.
 /// By the order of the ends of both triangles' segments on that line, which is a sign of four corners each: [Guigue 2003].
 /// `sides_a`: sides_of(b, a); `sides_b`: sides_of(a, b). Precondition: neither has its corners on a line.
-std::optional<CurveSegment> crossing_of(const Triangle& a, const std::array<double, 3>& sides_a, const Triangle& b,
-                                        const std::array<double, 3>& sides_b);
+std::optional<CurveSegment> crossing_of(const Triangle& a, const Sides& sides_a, const Triangle& b, const Sides& sides_b);
 
 /// Returns the part of a segment in a triangle's plane that passes through the triangle's inside; nothing where they share none of it.
 /// Precondition: both ends lie exactly in the plane, the triangle's corners not on a line.
@@ -33,6 +35,12 @@ std::optional<CurveSegment> inside_part(const Vec3& from, const Vec3& to, const 
 
 /// Returns what two segments on one line share, if it is more than a point. Segments that aren't on one line share nothing.
 std::optional<CurveSegment> shared_part(const CurveSegment& a, const CurveSegment& b);
+
+/// Whether a point lies in a triangle, its sides included, exactly. Precondition: the corners aren't on a line.
+bool lies_in(const Vec3& point, const Triangle& triangle);
+
+/// Whether a segment passes through a triangle, its sides included: its ends are on both sides of the plane. Same precondition.
+bool passes_through(const Vec3& from, const Vec3& to, const Triangle& triangle);
 
 /// Two half planes from an axis, each by a point of it.
 using HalfPlanes = std::array<Vec3, 2>;
