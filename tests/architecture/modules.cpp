@@ -30,6 +30,7 @@ const std::vector<Module>& modules() {
       {"mesh/field", {"mesh/spatial"}},
       {"mesh/quality", {"mesh/model"}},
       {"mesh/connections", {"mesh/quality", "mesh/spatial"}},
+      {"mesh/contact", {"mesh/connections"}},
       {"mesh/select", {"mesh/connections"}},
       {"mesh/shape", {"mesh/connections"}},
       {"mesh/relax", {"mesh/quality", "mesh/spatial"}},

@@ -1,0 +1,19 @@
+// Computes how far perforations go through.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "mesh/contact/perforations.h"
+#include "mesh/model/model.h"
+
+namespace prismesh::mesh::contact {
+
+/// Returns the depth of each perforation, on all cores; the same whatever their number. The curve cuts each sheet; a sheet is all shells
+/// that are connected over shared nodes. The pieces that it cuts off enter; where both sheets are cut, those with the smaller area. The
+/// depth is the greatest distance of an entering node from the other part's shells; in folds of one part, from the shells that cross. A
+/// curve that cuts nothing off is half through: its depth isn't known. `thickness_share` of the thicknesses of both shells is added: 0.5 to
+/// separate their faces, 0 for their middle surfaces. Precondition: the model has its adjacency.
+std::vector<PerforationDepth> perforation_depths(const Model& model, std::span<const Perforation> perforations, double thickness_share);
+
+}  // namespace prismesh::mesh::contact

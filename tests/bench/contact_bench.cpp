@@ -1,0 +1,65 @@
+// Measures the search for crossing shells in a million shells: one curved sheet, which has none, and two sheets that wave through each
+// other.
+#include <cmath>
+#include <memory>
+
+#include <benchmark/benchmark.h>
+
+#include "mesh/contact/find_perforations.h"
+#include "mesh/contact/perforation_depth.h"
+#include "mesh/model/adjacency.h"
+#include "mesh/spatial/box_tree.h"
+#include "tests/bench/million_quads.h"
+
+namespace prismesh::mesh::bench {
+namespace {
+
+Model with_its_adjacency(Model model) {
+  model.adjacency = std::make_shared<const Adjacency>(build_adjacency(model));
+  return model;
+}
+
+/// The upper half of the shells lies over the lower half, 5 mm away, and waves by 8 mm.
+Model two_layers() {
+  Model model = million_quads();
+  constexpr std::size_t kSide = 1000, kStride = kSide + 1;
+  for (std::size_t s = kSide * kSide / 2; s < kSide * kSide; ++s) model.shell_parts.set(s, PartIndex(std::size_t{1}));
+  for (std::size_t s = kSide * kSide / 2; s < kSide * kSide / 2 + kSide; ++s) model.shell_nodes.set(s, ShellNodes{});  // a gap
+  for (std::size_t j = kStride / 2 + 1; j < kStride; ++j)
+    for (std::size_t i = 0; i < kStride; ++i) {
+      const Vec3& below = model.positions[(j - kStride / 2 - 1) * kStride + i];
+      model.positions.set(j * kStride + i, below + Vec3(1.3, 2.1, 5 + 8 * std::sin(below.x() / 90) * std::cos(below.y() / 110)));
+    }
+  return model;
+}
+
+void find_no_crossing(benchmark::State& state) {
+  const Model model = with_its_adjacency(million_quads());
+  const spatial::BoxTree tree(model);
+  for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(contact::find_perforations(model, tree));
+}
+BENCHMARK(find_no_crossing)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+void find_crossings(benchmark::State& state) {
+  const Model model = with_its_adjacency(two_layers());
+  const spatial::BoxTree tree(model);
+  std::size_t regions = 0, pairs = 0;
+  for ([[maybe_unused]] auto _ : state) {
+    const auto found = contact::find_perforations(model, tree);
+    regions = found.size(), pairs = 0;
+    for (const contact::Perforation& perforation : found) pairs += perforation.crossings.size();
+  }
+  state.counters["regions"] = static_cast<double>(regions);
+  state.counters["pairs"] = static_cast<double>(pairs);
+}
+BENCHMARK(find_crossings)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+void find_depths(benchmark::State& state) {
+  const Model model = with_its_adjacency(two_layers());
+  const auto found = contact::find_perforations(model, spatial::BoxTree(model));
+  for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(contact::perforation_depths(model, found, 0));
+}
+BENCHMARK(find_depths)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+}  // namespace
+}  // namespace prismesh::mesh::bench
