@@ -92,6 +92,11 @@ class Service : public ipc::ServerHandler {
     for (const auto& [client, program] : all) tell(client, event);
   }
 
+  /// The next descriptors that the client has sent. Errors: fewer have arrived.
+  Result<std::vector<ipc::Descriptor>> take_descriptors(ipc::ClientId client, std::size_t count) {
+    return server_->take_descriptors(client, count);
+  }
+
   /// The programs of the clients that were welcomed.
   const std::map<ipc::ClientId, std::string>& greeted() const { return greeted_; }
 

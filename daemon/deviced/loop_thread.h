@@ -2,8 +2,6 @@
 // on the device page.
 #pragma once
 
-#include <pthread.h>
-
 #include <array>
 #include <atomic>
 #include <cstdint>
@@ -14,12 +12,9 @@
 #include "base/error.h"
 #include "daemon/common/watchdog.h"
 #include "daemon/deviced/loop.h"
+#include "daemon/deviced/realtime/realtime.h"
 
 namespace prismesh::deviced {
-
-/// Locks the process's memory, present and future, unless a limit applies: then a later allocation would fail. Returns an empty text, or
-/// why it wasn't locked and what would help.
-std::string lock_memory();
 
 /// Returns when the next tick is due after one that was due at `due_ns` and ended at `ended_ns`. Skips missed periods: after a stall the
 /// devices must not receive many ticks at once.
@@ -35,13 +30,12 @@ class LoopThread {
   LoopThread& operator=(const LoopThread&) = delete;
 
   /// Why SCHED_FIFO was refused and what would help; empty if it was granted.
-  const std::string& refused() const { return refused_; }
+  const std::string& refused() const { return thread_.refused; }
   /// Beats at each completed tick.
   const daemon::Heartbeat& heartbeat() const { return heartbeat_; }
 
  private:
   LoopThread(DeviceLoop& loop, ipc::DevicePage& page) : loop_(loop), page_(page) {}
-  int create(bool realtime);
   static void* enter(void* self);
   void run();
   void record_timing(std::int64_t due_ns, std::int64_t began_ns, std::int64_t cpu_ns);
@@ -51,11 +45,10 @@ class LoopThread {
   MonotonicClock clock_;
   ipc::DeviceHealth health_;
   std::array<std::int64_t, 256> costs_{};
-  std::string refused_;
   bool running_ = false;
   std::atomic<bool> stop_ = false;
   daemon::Heartbeat heartbeat_;
-  pthread_t thread_{};
+  StartedThread thread_;
 };
 
 }  // namespace prismesh::deviced

@@ -34,6 +34,8 @@ class BytePort {
   virtual bool set_baud(int baud) = 0;
   /// Returns the errno that made the port `gone`, 0 after a plain end of file.
   virtual int last_error() const = 0;
+  /// Returns the descriptor of the line, for a process that keeps a duplicate of it; -1: there is none.
+  virtual int descriptor() const { return -1; }
 };
 
 }  // namespace prismesh::drivers::port

@@ -34,6 +34,7 @@ class DescriptorPort final : public BytePort {
   void discard_input() override;
   bool set_baud(int) override { return true; }
   int last_error() const override { return last_error_; }
+  int descriptor() const override { return descriptor_; }
 
  private:
   PortCount failed(std::size_t bytes, int error);

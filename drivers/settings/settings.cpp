@@ -224,13 +224,22 @@ Section servo_section(PrismServoSettings& servo, DeviceLines& places, const std:
        number("speed_mm_s", servo.speed_mm_s, 0.01, 1000, " mm/s"), number("lag_ms", servo.lag_ms, 0, 200, " ms")}};
 }
 
+Section pen_section(HapticPenSettings& pen) {
+  return {"haptic_pen",
+          {choice("driver", {"none", "simulated"}, [&pen](std::size_t i) { pen.driver = PenDriver(i); }), device_file("port", pen.port),
+           number("max_newton", pen.max_newton, 0.1, 8, " N"), number("stiffness_newton_m", pen.stiffness_newton_m, 0, 5000, " N/m"),
+           number("friction", pen.friction, 0, 1, ""), number("damping_newton_s_m", pen.damping_newton_s_m, 0, 5, " N s/m"),
+           number("workspace_scale", pen.workspace_scale, 0.0001, 10000, " mm per length unit"),
+           choice("hand", {"right", "left"}, [&pen](std::size_t i) { pen.left_handed = i == 1; })}};
+}
+
 class Reader {
  public:
   Reader(std::string file, StationSettings& settings, DeviceLines& places)
       : file_(std::move(file)), folder_(fs::path(file_).parent_path()), settings_(settings), places_(places) {}
 
   Result<void> read(const toml::table& root) const {
-    const std::array<Section, 5> sections{
+    const std::array<Section, 6> sections{
         Section{"display",
                 {name_or_file("profile", settings_.display.profile, folder_, "a profile's name or file in quotes, like \"prism-mask\""),
                  number("latency_ms", settings_.display.latency_ms, 0, 200, " ms"),
@@ -241,7 +250,9 @@ class Reader {
         Section{"document",
                 {whole("history_mb", settings_.document.history_mb, 16, 1'048'576, " MB"),
                  whole("hang_s", settings_.document.hang_s, 0, 86'400, " s")}},
-        tracker_section(settings_.eye_tracker, places_, file_), servo_section(settings_.prism_servo, places_, file_)};
+        tracker_section(settings_.eye_tracker, places_, file_),
+        servo_section(settings_.prism_servo, places_, file_),
+        pen_section(settings_.haptic_pen)};
     std::vector<std::string_view> names;
     for (const Section& section : sections) names.push_back(section.name);
     for (const auto& [key, node] : root) {

@@ -19,6 +19,7 @@ namespace prismesh::drivers::settings {
 enum class TrackerDriver : std::uint8_t { none, dynasight, opentrack };
 enum class TrackerDialect : std::uint8_t { dynasight, d4d };  ///< the command that starts streaming: `V` or `0`
 enum class ServoDriver : std::uint8_t { none, dynamixel };
+enum class PenDriver : std::uint8_t { none, simulated };
 
 struct EyeTrackerSettings {
   TrackerDriver driver = TrackerDriver::none;
@@ -49,6 +50,19 @@ struct PrismServoSettings {
   double speed_mm_s = 5.0;
   double lag_ms = 15;
   bool operator==(const PrismServoSettings&) const = default;
+};
+
+/// The figures are starting values: nobody has felt them.
+struct HapticPenSettings {
+  PenDriver driver = PenDriver::none;
+  std::string port;                 ///< a pseudo-terminal of a program that simulates a pen; empty: the daemon simulates it
+  double max_newton = 8;            ///< the device's own limit holds if that is less
+  double stiffness_newton_m = 600;  ///< of contact; the loop lowers it to what the device allows
+  double friction = 0.2;            ///< Coulomb's coefficient on shells
+  double damping_newton_s_m = 0.3;
+  double workspace_scale = 1;  ///< millimetres of the pen's motion for one of the model's length unit
+  bool left_handed = false;
+  bool operator==(const HapticPenSettings&) const = default;
 };
 
 /// What the kiosk shows its picture on.
@@ -92,6 +106,7 @@ struct StationSettings {
   DocumentSettings document;
   EyeTrackerSettings eye_tracker;
   PrismServoSettings prism_servo;
+  HapticPenSettings haptic_pen;
   std::vector<std::filesystem::path> files;  ///< the files that were read, in order
 };
 

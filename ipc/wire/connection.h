@@ -52,8 +52,8 @@ class Connection {
   virtual ~Connection() = default;
 
   /// Sends without waiting; returns the request's number.
-  Result<std::uint64_t> send(const Request& request) {
-    Result<std::uint64_t> number = queue(request);
+  Result<std::uint64_t> send(const Request& request, std::vector<Descriptor> descriptors = {}) {
+    Result<std::uint64_t> number = queue(request, std::move(descriptors));
     if (!number) return number;
     if (Result<void> flushed = flush(); !flushed) return fail(std::move(flushed.error()));
     return number;
@@ -146,10 +146,10 @@ class Connection {
     return fail(path_.string(), std::string(Protocol::kDaemon) + " is gone (" + why.message + ")");
   }
 
-  Result<std::uint64_t> queue(const Request& request) {
+  Result<std::uint64_t> queue(const Request& request, std::vector<Descriptor> descriptors = {}) {
     Result<std::string> line = Protocol::encode(next_number_, request);
     if (!line) return fail(std::move(line.error()));
-    socket_.queue(std::move(*line));
+    socket_.queue(std::move(*line), std::move(descriptors));
     return next_number_++;
   }
 

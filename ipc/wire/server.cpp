@@ -69,8 +69,8 @@ class Watched {
 };
 
 struct ServedClient {
-  ServedClient(asio::io_context& loop, Descriptor socket, std::size_t line_bytes, const Roles& of_user)
-      : lines(std::move(socket), {line_bytes, 0}), watched(loop, lines.descriptor()), roles(of_user) {}
+  ServedClient(asio::io_context& loop, Descriptor socket, const ServerLimits& limits, const Roles& of_user)
+      : lines(std::move(socket), {limits.line_bytes, limits.descriptors}), watched(loop, lines.descriptor()), roles(of_user) {}
 
   LineSocket lines;
   Watched watched;
@@ -145,7 +145,7 @@ struct Server::Impl {
       if (roles_of_client.none()) continue;
       if (connections.size() >= limits.clients) close_oldest_silent();
       const ClientId client = next_client++;
-      const auto served = std::make_shared<ServedClient>(loop, std::move(socket), limits.line_bytes, roles_of_client);
+      const auto served = std::make_shared<ServedClient>(loop, std::move(socket), limits, roles_of_client);
       served->surplus = connections.size() >= limits.clients;
       connections.emplace(client, served);
       handler.connected(client);
@@ -287,6 +287,12 @@ Server::~Server() {
   if (!impl_) return;
   for (const auto& [client, connection] : impl_->connections) (void)connection->lines.flush();
   if (impl_->lock) ::unlink(impl_->path.c_str());
+}
+
+Result<std::vector<Descriptor>> Server::take_descriptors(ClientId client, std::size_t count) {
+  const std::shared_ptr<ServedClient> connection = impl_->find(client);
+  if (!connection) return fail("", "the client is gone");
+  return connection->lines.take_descriptors(count);
 }
 
 Roles Server::roles(ClientId client) const {

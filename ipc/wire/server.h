@@ -21,6 +21,7 @@ namespace prismesh::ipc {
 struct ServerLimits {
   std::size_t line_bytes = std::size_t{8} << 20;    ///< max length of a line; the sender of a longer one is disconnected
   std::size_t queue_bytes = std::size_t{32} << 20;  ///< max bytes that wait for a client; with more it is disconnected
+  std::size_t descriptors = 0;                      ///< max. number from a client that no request has taken; 0: none are accepted
   std::size_t clients = 32;
   std::chrono::milliseconds stall{10'000};     ///< a client that reads nothing for so long is disconnected
   std::chrono::milliseconds greeting{10'000};  ///< a client that doesn't greet for so long is disconnected
@@ -60,6 +61,8 @@ class Server {
   void every(std::chrono::nanoseconds period, std::function<void()> work);
 
   void send(ClientId client, std::string line, std::vector<Descriptor> descriptors = {});
+  /// The next descriptors that the client has sent. Errors: fewer have arrived.
+  Result<std::vector<Descriptor>> take_descriptors(ClientId client, std::size_t count);
   /// Of the client's user, when it connected.
   Roles roles(ClientId client) const;
   /// Tells the server that the daemon has welcomed the client.

@@ -47,15 +47,20 @@ const std::vector<Module>& modules() {
       {"drivers/prism_servo", {"drivers/display", "drivers/eye_tracker"}},
       {"drivers/prism_servo/dynamixel", {"drivers/prism_servo", "drivers/settings"}},
       {"drivers/haptic_pen", {"base"}},
+      {"drivers/haptic_pen/framed", {"drivers/haptic_pen", "drivers/port"}},
       {"drivers/haptics", {"drivers/haptic_pen"}},
 
       {"ipc/wire", {"base/json"}},
       {"ipc/device", {"ipc/wire", "drivers/prism_servo"}},
+      {"ipc/pen", {"ipc/wire", "drivers/haptics"}},
       {"ipc/model", {"ipc/wire", "mesh/document"}},
 
       {"daemon/common", {"ipc/wire"}},
       {"daemon/modeld", {"ipc/model", "daemon/common", "drivers/settings"}},
-      {"daemon/deviced", {"ipc/device", "daemon/common", "drivers/eye_tracker/configured", "drivers/prism_servo/dynamixel"}},
+      {"daemon/deviced/realtime", {"base"}},
+      {"daemon/deviced/pen", {"ipc/pen", "daemon/common", "daemon/deviced/realtime", "drivers/haptic_pen/framed", "drivers/settings"}},
+      {"daemon/deviced",
+       {"ipc/device", "daemon/common", "daemon/deviced/pen", "drivers/eye_tracker/configured", "drivers/prism_servo/dynamixel"}},
 
       {"kiosk/display", {"drivers/display"}},
       {"kiosk/display/kms", {"kiosk/display", "drivers/settings"}},
@@ -81,7 +86,7 @@ const std::vector<Module>& modules() {
         "kiosk/tools/mesh_operations", "kiosk/tools/parts", "kiosk/tools/view", "kiosk/calibration", "kiosk/display/kms",
         "kiosk/display/x11", "drivers/settings"}},
 
-      {"cli", {"ipc/device", "ipc/model", "drivers/settings"}},
+      {"cli", {"ipc/device", "ipc/model", "ipc/pen", "drivers/settings"}},
   };
   return kModules;
 }

@@ -6,7 +6,7 @@
 
 #include "daemon/deviced/device_status.h"
 #include "daemon/deviced/loop_thread.h"
-#include "daemon/deviced/ring.h"
+#include "daemon/deviced/realtime/ring.h"
 
 namespace prismesh::deviced {
 namespace {

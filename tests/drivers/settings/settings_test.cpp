@@ -42,6 +42,9 @@ std::string all_of(const StationSettings& settings) {
        << t.motion << '|' << int(s.driver) << '|' << s.simulated << '|' << s.port << '|' << s.baud << '|' << s.id << '|'
        << s.travel_mm_per_turn << '|' << s.reversed << '|' << s.zero_ticks << '|' << s.travel_mm << '|' << s.speed_mm_s << '|' << s.lag_ms
        << '|' << settings.hand.mouse << '|' << settings.document.history_mb << '|' << settings.document.hang_s;
+  const HapticPenSettings& p = settings.haptic_pen;
+  text << '|' << int(p.driver) << p.port << '|' << p.max_newton << '|' << p.stiffness_newton_m << '|' << p.friction << '|'
+       << p.damping_newton_s_m << '|' << p.workspace_scale << '|' << p.left_handed;
   return text.str();
 }
 
@@ -83,6 +86,15 @@ zero_ticks = 1000
 travel_mm = 1.5
 speed_mm_s = 6
 lag_ms = 20
+[haptic_pen]
+driver = "simulated"
+port = "/dev/pts/9"
+max_newton = 6
+stiffness_newton_m = 500
+friction = 0.1
+damping_newton_s_m = 0.4
+workspace_scale = 2.5
+hand = "left"
 )";
 
 TEST(Settings, an_empty_file_keeps_every_default) { EXPECT_EQ(all_of(parsed("")), all_of(StationSettings{})); }
@@ -90,7 +102,7 @@ TEST(Settings, an_empty_file_keeps_every_default) { EXPECT_EQ(all_of(parsed(""))
 TEST(Settings, every_key_is_read) {
   EXPECT_EQ(all_of(parsed(kEveryKey)),
             "anaglyph|6.5|2DP-1|1920 1080 60|1|1|1|/dev/serial/by-id/usb-tracker|9600|0|1|4243|12.5|0.5|1 210.5 -15|61|lean|"
-            "1|1|/dev/serial/by-id/usb-servo|57600|7|4|1|1000|1.5|6|20|middle-orbit|64|30");
+            "1|1|/dev/serial/by-id/usb-servo|57600|7|4|1|1000|1.5|6|20|middle-orbit|64|30|1/dev/pts/9|6|500|0.1|0.4|2.5|1");
 }
 
 TEST(Settings, names_choose_drivers_and_dialects) {
@@ -142,6 +154,10 @@ TEST(Settings, refuses_errors_with_line_and_remedy) {
       {"[hand]\nmouse = 3\n", "station.toml:2: hand.mouse must be a layout's name or file in quotes"},
       {"[document]\nhistory_mb = 1\n", "station.toml:2: document.history_mb is 1; it must be from 16 to 1048576 MB"},
       {"[document]\nhang_s = -1\n", "station.toml:2: document.hang_s is -1; it must be from 0 to 86400 s"},
+      {"[haptic_pen]\ndriver = 'falcon'\n",
+       "station.toml:2: haptic_pen.driver has no \"falcon\"; the nearest is \"none\" of none, simulated"},
+      {"[haptic_pen]\nhand = 'both'\n", "station.toml:2: haptic_pen.hand has no \"both\""},
+      {"[haptic_pen]\nport = 'pen'\n", "station.toml:2: haptic_pen.port must be a device's whole path"},
       {"[display]\nprofile = \n", "station.toml:2: "},
       {"[display]\n[display]\n", "station.toml:2: "},
       {"[display]\nprofile = \"\xff\"\n", "station.toml:2: "},
@@ -184,7 +200,12 @@ TEST(Settings, refuses_numbers_beyond_their_limits) {
                            {"prism_servo", "zero_ticks", "-1048576", "-1048575", "1048575", "1048576"},
                            {"prism_servo", "travel_mm", "0.009", "0.01", "100", "100.1"},
                            {"prism_servo", "speed_mm_s", "0.009", "0.01", "1000", "1000.1"},
-                           {"prism_servo", "lag_ms", "-0.1", "0", "200", "200.1"}}) {
+                           {"prism_servo", "lag_ms", "-0.1", "0", "200", "200.1"},
+                           {"haptic_pen", "max_newton", "0.09", "0.1", "8", "8.1"},
+                           {"haptic_pen", "stiffness_newton_m", "-1", "0", "5000", "5001"},
+                           {"haptic_pen", "friction", "-0.1", "0", "1", "1.1"},
+                           {"haptic_pen", "damping_newton_s_m", "-0.1", "0", "5", "5.1"},
+                           {"haptic_pen", "workspace_scale", "0", "0.0001", "10000", "10001"}}) {
     const std::string key = std::string("[") + one.section + "]\n" + one.key + " = ";
     for (const char* taken : {one.low, one.high}) EXPECT_EQ(error_of(key + taken), "accepted") << key << taken;
     for (const char* refused : {one.below, one.above})

@@ -1,0 +1,19 @@
+// The watchdog of the pen's line, as the forked process runs it. Calls only what may be called after a fork; allocates nothing.
+#pragma once
+
+#include "daemon/deviced/pen/guard_page.h"
+#include "ipc/wire/descriptor.h"
+
+namespace prismesh::deviced::pen {
+
+/// The heartbeat may be missing for so long.
+inline constexpr std::int64_t kMaxSilenceNs = 10'000'000;
+
+/// What the loop's process tells the guard: a byte, `line` with a descriptor. The end of the socket says that the process has died.
+enum class GuardWord : char { line = 'L', release = 'R', end = 'E' };
+
+/// Never returns. `socket`: to the loop's process. `lock`: an open file that this process locks while it lives, so that a later guard's
+/// parent can find it. Closes all other descriptors.
+[[noreturn]] void run_guard(GuardPage& page, int socket, int lock, int parent);
+
+}  // namespace prismesh::deviced::pen

@@ -1,0 +1,153 @@
+#include "daemon/deviced/pen/pen_station.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "base/log.h"
+#include "drivers/port/open_port.h"
+#include "drivers/port/pty_pair.h"
+
+namespace prismesh::deviced::pen {
+
+namespace {
+
+namespace framed = drivers::haptic_pen::framed;
+using drivers::haptics::HapticLimits;
+using drivers::haptics::SafetyPhase;
+using drivers::haptics::SafetyRecord;
+
+constexpr std::int64_t kTryAgainNs = 250'000'000;
+constexpr int kSimulatedBaud = 115'200;
+
+}  // namespace
+
+PenStation::PenStation(const drivers::settings::HapticPenSettings& settings, LineGuard& guard, FieldReader& fields, ipc::PenPage& page,
+                       RecordStore& records)
+    : settings_(settings), guard_(guard), fields_(fields), page_(page), records_(records), port_(settings.port) {}
+
+Result<std::unique_ptr<PenStation>> PenStation::start(const drivers::settings::HapticPenSettings& settings, LineGuard& guard,
+                                                      FieldReader& fields, ipc::PenPage& page, RecordStore& records, bool memory_locked) {
+  std::unique_ptr<PenStation> station(new PenStation(settings, guard, fields, page, records));
+  station->health_.pid = ::getpid();
+  station->health_.guard_pid = guard.process();
+  station->health_.memory_locked = memory_locked;
+  station->feel_.stiffness_newton_m = settings.stiffness_newton_m;
+  station->feel_.friction = settings.friction;
+  station->feel_.damping_newton_s_m = settings.damping_newton_s_m;
+  if (settings.port.empty()) {
+    Result<drivers::port::PtyPair> terminal = drivers::port::open_pty_pair();
+    if (!terminal) return fail(std::move(terminal.error()));
+    station->port_ = terminal->slave_path;
+    station->device_ = std::make_unique<framed::SimulatedDeviceThread>(std::move(terminal->master),
+                                                                       drivers::haptic_pen::SimulatedPenOptions{}, framed::wandering_hand);
+  }
+  // What the last process has left: it may have died armed.
+  const SafetyRecord stored = records.stored();
+  if (stored.phase == SafetyPhase::armed)
+    if (Result<void> latched = records.store({SafetyPhase::latched, drivers::haptics::SafetyFault::died_armed, 0}); !latched)
+      return fail(std::move(latched.error()));
+  station->show_absent();
+  station->poll();
+  return station;
+}
+
+PenStation::~PenStation() {
+  const bool armed = loop_ && loop_->record().phase == SafetyPhase::armed;
+  close_line();
+  // It ends in order and the force is zero: nothing has to be found out before the pen is armed again.
+  if (armed || arming_) (void)records_.store({});
+}
+
+void PenStation::poll() {
+  if (pen_ && pen_->gone()) {
+    store_record();
+    close_line();
+    trouble_ = "the line was lost: is the pen plugged in?";
+    logging::warn("{}: {}", port_, trouble_);
+    show_absent();
+  }
+  if (!pen_ && clock_.now_ns() >= next_try_ns_) open_line();
+  store_record();
+}
+
+void PenStation::open_line() {
+  next_try_ns_ = clock_.now_ns() + kTryAgainNs;
+  Result<std::unique_ptr<drivers::port::BytePort>> opened = drivers::port::open_port(port_, kSimulatedBaud);
+  if (!opened) {
+    if (std::exchange(trouble_, opened.error().text()) != trouble_) logging::warn("{}", trouble_);
+    return;
+  }
+  line_ = std::move(*opened);
+  guarded_.emplace(*line_, guard_.page());
+  pen_.emplace(*guarded_, framed::simulated_limits({}));
+  HapticLimits limits;
+  limits.max_newton = settings_.max_newton;
+  loop_.emplace(limits, *pen_, fields_, guard_.page(), page_, records_.stored(), feel_, page_.state().arms_answered);
+  Result<std::unique_ptr<PenThread>> started = PenThread::start(*loop_, guard_.page(), page_, health_);
+  Result<void> watched = started ? guard_.watch(*line_) : Result<void>(fail(started.error()));
+  if (started) thread_ = std::move(*started);
+  if (!watched) {
+    trouble_ = watched.error().text();
+    logging::error("{}", trouble_);
+    return close_line();
+  }
+  if (!thread_->refused().empty() && refused_.empty()) logging::warn("{}", refused_ = thread_->refused());
+  trouble_.clear();
+  logging::info("{}: open", port_);
+}
+
+void PenStation::close_line() {
+  thread_.reset();
+  guard_.release();
+  loop_.reset();
+  pen_.reset();
+  guarded_.reset();
+  line_.reset();
+}
+
+void PenStation::show_absent() {
+  ipc::PenState state = page_.state();
+  state.time_ns = clock_.now_ns();
+  const SafetyRecord& record = records_.stored();
+  state.stage = record.phase == SafetyPhase::latched ? ipc::PenStage::latched : ipc::PenStage::absent;
+  state.fault = record.fault;
+  state.newton = {};
+  state.touching = false;
+  page_.set_state(state);
+}
+
+void PenStation::store_record() {
+  if (!loop_) return;
+  // The loop's record follows once it has answered; until then the disk says armed.
+  if (arming_ && page_.state().arms_answered == arms_before_) return;
+  arming_ = false;
+  if (Result<void> stored = records_.store(loop_->record()); !stored) {
+    logging::error("the pen's state can't be stored, so it is disarmed: {}", stored.error().text());
+    loop_->send(RequestDisarm{});
+  }
+}
+
+Result<void> PenStation::arm() {
+  if (!loop_) return fail("", "the pen isn't there" + (trouble_.empty() ? std::string() : ": " + trouble_));
+  if (!guard_.is_alive()) return fail("", "nobody guards the pen's line");
+  if (arming_) return fail("", "the pen is being armed already");
+  arms_before_ = page_.state().arms_answered;
+  if (Result<void> stored = records_.store({SafetyPhase::armed, {}, 0}); !stored) return stored;
+  arming_ = true;
+  if (!loop_->send(RequestArm{})) return fail("", "the loop takes no requests");
+  return {};
+}
+
+Result<void> PenStation::disarm() {
+  if (loop_ && !loop_->send(RequestDisarm{})) return fail("", "the loop takes no requests");
+  return {};
+}
+
+void PenStation::use(const drivers::haptics::Feel& feel) {
+  feel_ = feel;
+  if (loop_) loop_->send(UseFeel{feel});
+}
+
+}  // namespace prismesh::deviced::pen
