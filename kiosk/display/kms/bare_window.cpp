@@ -42,6 +42,8 @@ class Descriptor {
   int value_;
 };
 
+constexpr std::uint64_t kManyLost = 3;  ///< events that never came
+
 KeyboardNames station_keyboard() {
   std::ifstream file("/etc/default/keyboard");
   std::ostringstream text;
@@ -100,9 +102,11 @@ class BareWindow final : public Window {
   std::unique_ptr<InputDevices> devices_;
   std::optional<Input> input_;
   LinkFacts facts_;
+  bool losses_told_ = false;
   std::vector<std::string> told_;  ///< about the link; a sentence isn't said twice
   std::uint64_t modes_read_ = 0;   ///< how often the mode had been set when the link was read back
   bool active_ = true;             ///< the seat was ours at the last look
+  bool plugged_ = false;           ///< a monitor was plugged in or out since the outputs were read
   bool monitor_away_ = false;
   std::optional<Error> broken_;  ///< found while a picture was shown
   Descriptor watched_{::epoll_create1(EPOLL_CLOEXEC)};
@@ -224,6 +228,7 @@ Result<void> BareWindow::follow_seat(std::vector<WindowEvent>& out) {
     return {};
   }
   tell("the screen is ours again");
+  plugged_ = true;  // what was plugged meanwhile may not have been told
   devices_->resume();
   out.emplace_back(Exposed{});
   return flipper_->resume();
@@ -233,7 +238,9 @@ Result<void> BareWindow::follow_plugs(std::vector<WindowEvent>& out) {
   const Plugs::Changes changes = plugs_->take();
   if (std::find(changes.cards_gone.begin(), changes.cards_gone.end(), card_file_) != changes.cards_gone.end())
     return fail(card_file_, "the graphics card is gone");
-  if (!changes.monitors || !active_) return {};
+  plugged_ = plugged_ || changes.monitors;
+  if (!plugged_ || !active_) return {};
+  plugged_ = false;
   const Result<CardState> state = card_->read(true);
   if (!state) return fail(state.error());
   Result<Output> output = choose_output(*state, options_.output);
@@ -278,6 +285,8 @@ void BareWindow::free_pictures() {
 
 /// After the mode was set: what the driver has really done.
 void BareWindow::read_back() {
+  if (flipper_->counts().lost >= kManyLost && !std::exchange(losses_told_, true))
+    tell(card_file_ + ": the driver doesn't say when pictures appear; they may stutter, and depth is less exact");
   if (flipper_->counts().modes == modes_read_ || flipper_->counts().shown == 0) return;
   modes_read_ = flipper_->counts().modes;
   const Result<CardState> state = card_->read(false);
