@@ -141,6 +141,10 @@ void add_reading_commands(Parser& parser) {
   names_file(distance_app->add_option("DECK", distance_options->deck, "the deck's main file"))->required();
   distance_app->add_option("--from", distance_options->from, "an expression: node ids, shell:ID, part:ID")->required();
   distance_app->add_option("--to", distance_options->to, "another expression")->required();
+
+  const auto [penetrations_app, penetrations_options] =
+      add_command<PenetrationsOptions>(parser, "penetrations", "find where shells pass through each other", penetrations);
+  names_file(penetrations_app->add_option("DECK", penetrations_options->deck, "the deck's main file"))->required();
 }
 
 /// An option --elements of a command that makes the sample.

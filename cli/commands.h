@@ -68,6 +68,11 @@ struct DistanceOptions {
 };
 int distance(const DistanceOptions& options, const Common& common, const Context& context);
 
+struct PenetrationsOptions {
+  std::filesystem::path deck;
+};
+int penetrations(const PenetrationsOptions& options, const Common& common, const Context& context);
+
 struct SampleOptions {
   std::optional<std::size_t> elements;
   std::filesystem::path output;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "mesh/document/field.h"
@@ -59,6 +60,16 @@ struct Gap {
   End from;
   End to;
   std::optional<FieldFigures> nodes;  ///< of the first set: their distances from the second
+};
+
+/// A region in which shells pass through each other.
+struct CrossingRegion {
+  std::string a, b;  ///< "part:1"; "" for shells without a part
+  std::size_t shells_a = 0, shells_b = 0;
+  double length = 0;                           ///< of the curve along which they cross
+  std::optional<double> depth;                 ///< max; nothing: half through
+  mesh::Vec3 at = mesh::Vec3::Zero();          ///< the deepest node; half through: a point of the curve
+  std::pair<std::string, std::string> shells;  ///< "shell:7" of each side, the first that cross
 };
 
 }  // namespace prismesh::cli

@@ -158,6 +158,21 @@ std::string distance_json(const Gap& gap) {
       .dump();
 }
 
+std::string penetrations_json(const std::vector<CrossingRegion>& regions) {
+  Json list = Json::array();
+  for (const CrossingRegion& region : regions)
+    list.push_back({{"kind", "perforation"},
+                    {"a", region.a},
+                    {"b", region.b},
+                    {"shells_a", region.shells_a},
+                    {"shells_b", region.shells_b},
+                    {"length", region.length},
+                    {"depth", region.depth ? Json{{"max", *region.depth}} : Json(nullptr)},
+                    {"at", point(region.at)},
+                    {"worst", {region.shells.first, region.shells.second}}});
+  return Json{{"perforations", regions.size()}, {"penetrations", nullptr}, {"regions", list}}.dump();
+}
+
 namespace {
 
 /// Units stand in the fields' names: the size is "bytes", "nodes" or "shells", its rate "bytes_per_s" and so on.

@@ -86,7 +86,7 @@ const std::vector<Module>& modules() {
         "kiosk/tools/mesh_operations", "kiosk/tools/parts", "kiosk/tools/view", "kiosk/calibration", "kiosk/display/kms",
         "kiosk/display/x11", "drivers/settings"}},
 
-      {"cli", {"ipc/device", "ipc/model", "ipc/pen", "drivers/settings"}},
+      {"cli", {"ipc/device", "ipc/model", "ipc/pen", "drivers/settings", "mesh/contact"}},
   };
   return kModules;
 }
