@@ -6,6 +6,7 @@
 #include "cli/json_output.h"
 #include "cli/json_values.h"
 #include "cli/report_text.h"
+#include "cli/shell_name.h"
 
 namespace prismesh::cli {
 
@@ -17,7 +18,6 @@ namespace quality = mesh::quality;
 
 constexpr std::size_t kNamed = 100;  ///< of each list; the count is of all
 
-std::string shell_name(const mesh::Model& model, mesh::ShellIndex shell) { return "shell:" + std::to_string(model.shell_ids[shell.value]); }
 std::string node_name(const mesh::Model& model, mesh::NodeIndex node) { return "node:" + std::to_string(model.node_ids[node.value]); }
 
 const char* text_of(quality::Grade grade) { return grade == quality::Grade::fail ? "fail" : grade == quality::Grade::warn ? "warn" : "ok"; }

@@ -5,6 +5,7 @@
 #include "cli/json_output.h"
 #include "cli/open_deck.h"
 #include "cli/report_text.h"
+#include "cli/shell_name.h"
 #include "mesh/contact/find_perforations.h"
 #include "mesh/contact/perforation_depth.h"
 #include "mesh/spatial/box_tree.h"
@@ -18,8 +19,6 @@ namespace contact = mesh::contact;
 std::string part_name(const mesh::Model& model, mesh::PartIndex part) {
   return part.valid() ? "part:" + std::to_string((*model.parts)[part.value].id) : "";
 }
-
-std::string shell_name(const mesh::Model& model, mesh::ShellIndex shell) { return "shell:" + std::to_string(model.shell_ids[shell.value]); }
 
 std::vector<CrossingRegion> find_regions(const mesh::Model& model) {
   const std::vector<contact::Perforation> found = contact::find_perforations(model, mesh::spatial::BoxTree(model));
