@@ -251,11 +251,14 @@ void add_session(Parser& parser) {
 
 void add_devices(Parser& parser) {
   const auto [app, options] = add_command<DevicesOptions>(
-      parser, "devices", "show the eye tracker, the prism servo and the control loop of a running deviced", devices);
+      parser, "devices", "show the eye tracker, the prism servo, the haptic pen and their control loops", devices);
   add_optional(app, "--runtime-dir", options->runtime_directory, "the folder of deviced's socket");
   app->add_flag("--watch", options->watch, "print again each second, until Ctrl-C");
   app->add_flag("--rearm", options->rearm, "first enable a mask again that was stuck or switched itself off");
   app->add_flag("--reload", options->reload, "first read prismesh.toml and the display profile again");
+  auto* arm = app->add_flag("--arm-pen", options->arm_pen, "first arm the haptic pen, so that it may push");
+  app->add_flag("--disarm-pen", options->disarm_pen, "first disarm the haptic pen")->excludes(arm);
+  app->add_flag("--self-test", options->self_test, "measure the loop, the delay and the forces of the haptic pen for three seconds");
 }
 
 void add_doctor(Parser& parser) {

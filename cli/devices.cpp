@@ -1,4 +1,4 @@
-// Shows the eye tracker, the prism servo and the control loop of a running deviced.
+// Shows the eye tracker, the prism servo, the haptic pen and their control loops.
 #include <cmath>
 #include <ostream>
 #include <thread>
@@ -10,6 +10,7 @@
 #include "cli/commands.h"
 #include "cli/device_figures.h"
 #include "cli/json_output.h"
+#include "cli/pen_look.h"
 #include "cli/report_text.h"
 #include "ipc/device/client.h"
 
@@ -20,7 +21,7 @@ namespace {
 constexpr std::chrono::seconds kDevicedPatience{15};
 constexpr std::chrono::seconds kWatchPeriod{1};
 
-Result<DeviceFigures> look(ipc::DeviceClient& client) {
+Result<DeviceFigures> look(ipc::DeviceClient& client, const DevicesOptions& options) {
   Result<ipc::DeviceAnswer> answer = client.call(ipc::GetDevices{});
   while (client.next_event()) {
   }  // the answer has the same information
@@ -32,6 +33,9 @@ Result<DeviceFigures> look(ipc::DeviceClient& client) {
   figures.eyes = client.page().eyes().value_or(ipc::EyesState{});
   figures.mask = client.page().prism().value_or(ipc::PrismState{});
   figures.loop = client.page().health().value_or(ipc::DeviceHealth{});
+  Result<std::optional<PenFigures>> pen = look_at_pen(options);
+  if (!pen) return fail(std::move(pen.error()));
+  figures.pen = std::move(*pen);
   MonotonicClock clock;
   figures.now_ns = clock.now_ns();
   return figures;
@@ -74,6 +78,7 @@ void print(std::ostream& out, const DeviceFigures& figures) {
     if (!device.trouble.empty()) out << "  trouble: " << printable(device.trouble) << '\n';
   }
   out << "loop: " << loop_text(figures) << '\n';
+  if (figures.pen) out << pen_text(*figures.pen, figures.now_ns);
 }
 
 /// Does what the options ask for before the state is printed.
@@ -82,14 +87,14 @@ Result<void> act(ipc::DeviceClient& client, const DevicesOptions& options) {
     if (Result<ipc::DeviceAnswer> done = client.call(ipc::Reload{}); !done) return fail(std::move(done.error()));
   if (options.rearm)
     if (Result<ipc::DeviceAnswer> done = client.call(ipc::Rearm{}); !done) return fail(std::move(done.error()));
-  return {};
+  return act_on_pen(options);
 }
 
 Result<void> act_and_print(ipc::DeviceClient& client, const DevicesOptions& options, bool first, const Common& common,
                            const Context& context) {
   if (first)
     if (Result<void> acted = act(client, options); !acted) return acted;
-  const Result<DeviceFigures> figures = look(client);
+  const Result<DeviceFigures> figures = look(client, options);
   if (!figures) return fail(figures.error());
   if (common.json)
     context.out << devices_json(*figures) << '\n';
@@ -117,6 +122,16 @@ void watch(ipc::ReconnectingDeviceClient& connection, const DevicesOptions& opti
 }  // namespace
 
 int devices(const DevicesOptions& options, const Common& common, const Context& context) {
+  if (options.self_test) {
+    const Result<void> acted = act_on_pen(options);
+    const Result<std::string> measured = acted ? pen_self_test(options) : Result<std::string>(fail(acted.error()));
+    if (!measured) {
+      say(context, measured.error());
+      return kFailed;
+    }
+    context.out << *measured;
+    return kDone;
+  }
   ipc::ReconnectingDeviceClient connection(ipc::device_socket_path(options.runtime_directory), "prismesh devices");
   const Result<ipc::DeviceClient*> client = connection.wait(std::chrono::milliseconds(0));
   if (!client) {

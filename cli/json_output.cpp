@@ -223,6 +223,28 @@ std::string findings_json(const std::vector<Finding>& findings) {
   return Json{{"findings", std::move(listed)}}.dump();
 }
 
+Json pen_json(const DeviceFigures& figures) {
+  if (!figures.pen) return nullptr;
+  const auto& [info, state, loop] = *figures.pen;
+  return {{"kind", info.kind},
+          {"where", printable(info.where)},
+          {"simulated", info.simulated},
+          {"state", info.state},
+          {"trouble", printable(info.trouble)},
+          {"age_ms", or_null(figures.age_ms(state.measured_ns))},
+          {"position_mm", state.position_mm},
+          {"newton", state.newton},
+          {"touching", state.touching},
+          {"buttons", state.buttons},
+          {"field", state.field_number},
+          {"ticks", loop.ticks},
+          {"ticks_late", loop.ticks_late},
+          {"worst_late_ns", loop.worst_late_ns},
+          {"cpu_p99_ns", loop.cpu_p99_ns},
+          {"guard_trips", loop.guard_trips},
+          {"realtime", loop.realtime}};
+}
+
 std::string devices_json(const DeviceFigures& figures) {
   const ipc::EyesState& eyes = figures.eyes;
   const ipc::PrismState& mask = figures.mask;
@@ -236,6 +258,7 @@ std::string devices_json(const DeviceFigures& figures) {
                       {"state", device.state},
                       {"trouble", printable(device.trouble)}});
   return Json{{"profile", printable(figures.devices.profile)},
+              {"pen", pen_json(figures)},
               {"devices", std::move(listed)},
               {"eyes",
                {{"age_ms", or_null(figures.age_ms(eyes.measured_ns))},

@@ -207,17 +207,17 @@ std::vector<Finding> check_clock(const Machine& machine) {
 std::vector<Finding> check_units(const Machine& machine) {
   std::vector<std::string> missing;
   for (const char* unit : {"prismesh.target", "prismesh-modeld.socket", "prismesh-modeld.service", "prismesh-deviced.socket",
-                           "prismesh-deviced.service", "prismesh-kiosk.service"}) {
+                           "prismesh-deviced.service", "prismesh-pen.socket", "prismesh-pen.service", "prismesh-kiosk.service"}) {
     std::error_code problem;
     if (!fs::exists(below(machine, "/usr/lib/systemd/system") / unit, problem) &&
         !fs::exists(below(machine, "/etc/systemd/system") / unit, problem))
       missing.emplace_back(unit);
   }
   if (missing.empty()) return {{"units", Grade::good, "installed", {}}};
-  const std::string says = missing.size() == 6 ? "none is installed: the programs are started by hand"
+  const std::string says = missing.size() == 8 ? "none is installed: the programs are started by hand"
                                                : missing.front() + " is missing" +
                                                      (missing.size() > 1 ? ", and " + counted(missing.size() - 1, "other") : std::string());
-  return {{"units", missing.size() == 6 ? Grade::note : Grade::bad, says, "docs/appliance.md"}};
+  return {{"units", missing.size() == 8 ? Grade::note : Grade::bad, says, "docs/appliance.md"}};
 }
 
 }  // namespace prismesh::cli

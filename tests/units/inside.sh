@@ -32,11 +32,11 @@ is_active() { [ "$(systemctl is-active "$1")" = active ]; }
 main_pid() { systemctl show -P MainPID "$1"; }
 
 # --- the units themselves ---
-services="prismesh-modeld prismesh-deviced prismesh-kiosk"
+services="prismesh-modeld prismesh-deviced prismesh-pen prismesh-kiosk"
 check "systemd-analyze verify" bash -c 'said=$(systemd-analyze verify --man=no /usr/lib/systemd/system/prismesh* 2>&1); echo "$said"; [ -z "$(grep prismesh <<<"$said")" ]'
 for service in $services; do
   limit=15
-  [ $service != prismesh-deviced ] || limit=17
+  case $service in prismesh-deviced | prismesh-pen) limit=17 ;; esac
   check "exposure of $service at most 1.${limit#1}" systemd-analyze security --offline=yes --threshold=$limit /usr/lib/systemd/system/$service.service
 done
 
@@ -47,12 +47,16 @@ chgrp prismesh /var/lib/prismesh/models/sample.k
 chmod 664 /var/lib/prismesh/models/sample.k
 began=$(now_ms)
 systemctl start --no-block prismesh.target
-took=$(until_ms 20000 bash -c 'for each in prismesh-modeld prismesh-deviced prismesh-kiosk; do [ "$(systemctl is-active $each)" = active ] || exit 1; done') &&
+took=$(until_ms 20000 bash -c 'for each in prismesh-modeld prismesh-deviced prismesh-pen prismesh-kiosk; do [ "$(systemctl is-active $each)" = active ] || exit 1; done') &&
   ok "the target is up with its first picture after $took ms" || { bad "the target isn't up"; systemctl --no-pager status $services; }
 check "all run as their own users" bash -c '
   for each in modeld deviced kiosk; do
     [ "$(ps -o user:20= -p "$(systemctl show -P MainPID prismesh-$each)" | tr -d " ")" = "prismesh-$each" ] || { echo "$each"; exit 1; }
   done'
+check "the pen runs as the device daemon's user, with its guard" bash -c '
+  for each in $(systemctl show -P ControlGroup prismesh-pen | xargs -I{} cat /sys/fs/cgroup{}/cgroup.procs); do
+    ps -o user:20=,comm= -p "$each"
+  done | sort | tr -s " \n" " " | grep -q "^prismesh-deviced pen guard prismesh-deviced prismesh-device"'
 
 # --- the demo's work ---
 session() { timeout 30 prismesh session --runtime-dir $run "$@"; }
@@ -61,6 +65,7 @@ check "a patch is selected" session edit '{"edit":"select","expr":"5000001-50000
 check "and lifted" session edit '{"edit":"lift","distance":6}'
 check "and repaired" session edit '{"edit":"repair"}'
 check "the devices are there" timeout 5 prismesh devices --runtime-dir $run
+check "the pen is there" bash -c 'timeout 5 prismesh devices --runtime-dir /run/prismesh | grep "haptic pen: disarmed"'
 state >/tmp/before
 check "the state names the deck" grep -q sample.k /tmp/before
 

@@ -37,6 +37,8 @@ simulated = true
 [prism_servo]
 driver = "dynamixel"
 simulated = true
+[haptic_pen]
+driver = "simulated"
 SETTINGS
 chmod -R go-w "$root/etc/prismesh"
 "$build/bin/prismesh" sample --elements 2000 -o "$root/root/sample.k" >/dev/null

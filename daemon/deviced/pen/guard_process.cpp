@@ -57,9 +57,10 @@ class Guard {
     changed_ns_ = now_ns();
     for (;;) {
       wait();
-      if (told_to_end != 0) end();
       while (!orphan_ && take_word()) {
       }
+      // While the other process lives it says when to end: systemd tells both at once.
+      if (orphan_ && told_to_end != 0) end();
       if (orphan_ && line_ < 0) ::_exit(0);
       if (line_ >= 0) look();
     }

@@ -15,7 +15,7 @@ namespace prismesh::deviced::pen {
 class LineGuard {
  public:
   /// Call it before the process has threads. Ends the guard of an earlier process, which kept the device at zero until now. `folder`: of
-  /// the runtime; it holds the guard's lock. Errors: no process or memory; the earlier guard doesn't end.
+  /// the pen's state; it holds the guard's lock. Errors: no process or memory; the earlier guard doesn't end.
   static Result<LineGuard> start(const std::filesystem::path& folder);
   LineGuard(LineGuard&& other) noexcept;
   LineGuard& operator=(LineGuard&&) = delete;

@@ -66,6 +66,7 @@ struct PenDaemon::Impl final : daemon::Service<PenProtocol> {
   };
 
   drivers::settings::HapticPenSettings settings;
+  ipc::Descriptor lock;  ///< of the state's folder
   ipc::PenPage page;
   RecordStore records;
   drivers::haptics::Feel feel;
@@ -233,14 +234,17 @@ Result<PenDaemon> PenDaemon::start(const PenDaemonOptions& options) {
   Result<drivers::settings::StationSettings> settings = drivers::settings::read_settings(options.config);
   if (!settings) return fail(std::move(settings.error()));
   if (Result<void> made = make_folders(options.state_directory); !made) return fail(std::move(made.error()));
+  Result<ipc::Descriptor> lock = ipc::lock_folder(options.state_directory, "pen.lock", "a pen daemon");
+  if (!lock) return fail(std::move(lock.error()));
   Result<ipc::PenPage> page = ipc::PenPage::create();
   if (!page) return fail(std::move(page.error()));
   page->set_state({});
   auto state = std::make_unique<Impl>(settings->haptic_pen, std::move(*page), RecordStore(options.state_directory));
+  state->lock = std::move(*lock);
   const std::filesystem::path socket = ipc::pen_socket_path(options.runtime_directory);
   if (Result<void> listening = state->listen(socket, limits()); !listening) return fail(std::move(listening.error()));
   if (!state->has_pen()) return PenDaemon(std::move(state));
-  Result<LineGuard> guard = LineGuard::start(options.runtime_directory);
+  Result<LineGuard> guard = LineGuard::start(options.state_directory);
   if (!guard) return fail(std::move(guard.error()));
   state->guard.emplace(std::move(*guard));
   if (const std::string refused = lock_memory(); refused.empty())

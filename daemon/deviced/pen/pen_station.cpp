@@ -19,6 +19,8 @@ using drivers::haptics::SafetyPhase;
 using drivers::haptics::SafetyRecord;
 
 constexpr std::int64_t kTryAgainNs = 250'000'000;
+/// Far longer than what latches: the line is then opened anew.
+constexpr std::int64_t kMaxSilenceOfPenNs = 1'000'000'000;
 constexpr int kSimulatedBaud = 115'200;
 
 }  // namespace
@@ -61,14 +63,18 @@ PenStation::~PenStation() {
 }
 
 void PenStation::poll() {
-  if (pen_ && pen_->gone()) {
+  const bool gone = pen_ && pen_->gone();
+  // Where a line has come back under its old name while the old one was held, nothing tells but its silence.
+  const bool silent = pen_ && clock_.now_ns() - std::max(opened_ns_, page_.state().measured_ns) > kMaxSilenceOfPenNs;
+  if (gone || silent) {
     store_record();
     close_line();
-    trouble_ = "the line was lost: is the pen plugged in?";
+    trouble_ = gone ? "the line was lost: is the pen plugged in?" : "the line is open, but no poses come from it: is a pen there?";
     logging::warn("{}: {}", port_, trouble_);
     show_absent();
   }
   if (!pen_ && clock_.now_ns() >= next_try_ns_) open_line();
+  if (pen_ && page_.state().measured_ns > opened_ns_) trouble_.clear();
   store_record();
 }
 
@@ -94,8 +100,9 @@ void PenStation::open_line() {
     return close_line();
   }
   if (!thread_->refused().empty() && refused_.empty()) logging::warn("{}", refused_ = thread_->refused());
-  trouble_.clear();
-  logging::info("{}: open", port_);
+  opened_ns_ = clock_.now_ns();
+  // A line that is opened anew for its silence keeps its trouble until a pose comes.
+  if (!trouble_.empty()) logging::info("{}: open again", port_);
 }
 
 void PenStation::close_line() {

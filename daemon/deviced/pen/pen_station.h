@@ -56,7 +56,7 @@ class PenStation {
   drivers::haptics::Feel feel_;
   MonotonicClock clock_;
   std::string port_, trouble_, refused_;
-  std::int64_t next_try_ns_ = 0;
+  std::int64_t next_try_ns_ = 0, opened_ns_ = 0;
   bool arming_ = false;  ///< stored as armed, and the loop hasn't answered
   std::uint64_t arms_before_ = 0;
   std::unique_ptr<drivers::haptic_pen::framed::SimulatedDeviceThread> device_;

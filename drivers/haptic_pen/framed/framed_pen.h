@@ -1,6 +1,7 @@
 // A pen behind a line of frames (frame.h).
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 
 #include "drivers/haptic_pen/framed/frame.h"
@@ -33,7 +34,8 @@ class FramedPen final : public HapticPen {
   FrameFinder finder_;
   PenPhase phase_ = PenPhase::absent;
   std::uint32_t buttons_ = 0;
-  bool gone_ = false, refused_ = false, started_ = false;
+  std::atomic<bool> gone_ = false;  ///< read by the thread that opened the line, too
+  bool refused_ = false, started_ = false;
   std::uint8_t number_ = 0, pose_number_ = 0, answered_ = 0;
   std::array<std::int64_t, 256> sent_ns_{};
   std::int64_t round_trip_ns_ = 0;

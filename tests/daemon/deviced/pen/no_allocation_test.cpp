@@ -5,6 +5,7 @@
 #include <pthread.h>
 #include <sched.h>
 #include <signal.h>
+#include <sys/ioctl.h>
 #include <sys/prctl.h>
 #include <sys/syscall.h>
 #include <unistd.h>
@@ -99,6 +100,8 @@ enum Found { kNothing = 0, kAllocations = 1, kLocks = 2, kCalls = 4, kMissingSta
   for (int i = 0; i < 4000; ++i) {
     now += i % 1000 == 899 ? 20'000'000 : 1'000'000;
     device.step(now);
+    // The kernel passes the pose on in its own time.
+    for (int waiting = 0, turn = 0; waiting == 0 && turn < 100'000; ++turn) ::ioctl(line->descriptor(), FIONREAD, &waiting);
     if (i % 300 == 50) loop.send(RequestArm{});
     if (i % 300 == 150) loop.send(UseFeel{});
     if (i % 1000 == 370) loop.send(RequestDisarm{});

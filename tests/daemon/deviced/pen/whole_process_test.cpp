@@ -215,7 +215,7 @@ TEST_F(PenProcess, starved_by_a_busy_loop_on_its_core_is_followed_by_zeros) {
     const sched_param none{};
     ASSERT_EQ(::sched_setscheduler(loop, SCHED_IDLE, &none), 0);
   }
-  const std::size_t before = 0;
+  const std::size_t before = line_->seen().size();
   const std::size_t zero = first_of_guard(before);
   busy = false;
   hog.join();
@@ -224,6 +224,7 @@ TEST_F(PenProcess, starved_by_a_busy_loop_on_its_core_is_followed_by_zeros) {
   std::this_thread::sleep_for(20ms);
   if (!daemon_->running()) start();
   ASSERT_TRUE(wait_for_stage(PenStage::latched)) << daemon_->standard_error();
+  if (health().guard_silence_ns > 0) report("starved: silence when the guard took the line", ms(health().guard_silence_ns));
   ASSERT_TRUE(wait_for([&] { return !line_->seen().back().of_guard(); }));
   expect_zeros(zero, line_->seen().size() - zero + 50);
 }
