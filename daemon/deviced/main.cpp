@@ -11,8 +11,8 @@
 namespace {
 
 constexpr const char* kUsage =
-    "usage: prismesh-deviced [--only pen] [--runtime-dir FOLDER] [--state-dir FOLDER] [--config FILE]\n"
-    "  --only pen     drives the haptic pen, and nothing else; without it, everything but the pen\n"
+    "usage: prismesh-deviced [--only PROCESS] [--runtime-dir FOLDER] [--state-dir FOLDER] [--config FILE]\n"
+    "  --only         pen: drives the haptic pen, and nothing else; without it, everything but the pen\n"
     "  --runtime-dir  for the socket; default $RUNTIME_DIRECTORY, $XDG_RUNTIME_DIR/prismesh or /tmp/prismesh-UID\n"
     "  --state-dir    for the pen's latch; default $STATE_DIRECTORY, $XDG_STATE_HOME/prismesh or ~/.local/state/prismesh\n"
     "  --config       settings that go before those in /etc/prismesh/prismesh.toml and ~/.config/prismesh/prismesh.toml\n";

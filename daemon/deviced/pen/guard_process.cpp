@@ -61,8 +61,8 @@ class Guard {
       }
       // While the other process lives it says when to end: systemd tells both at once.
       if (orphan_ && told_to_end != 0) end();
-      if (orphan_ && line_ < 0) ::_exit(0);
       if (line_ >= 0) look();
+      if (orphan_ && line_ < 0) ::_exit(0);
     }
   }
 

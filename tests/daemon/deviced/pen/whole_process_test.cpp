@@ -258,6 +258,27 @@ TEST_F(PenProcess, ends_when_its_guard_has_ended) {
   ASSERT_TRUE(wait_for_stage(PenStage::disarmed)) << "it ended in order, with zero";
 }
 
+/// Whether a process has ended, waited for or not.
+bool has_ended(std::int64_t process) {
+  std::ifstream status("/proc/" + std::to_string(process) + "/status");
+  for (std::string line; std::getline(status, line);)
+    if (line.starts_with("State:")) return line.find('Z') != std::string::npos;
+  return true;
+}
+
+TEST_F(PenProcess, leaves_no_guard_behind_once_its_line_is_gone_too) {
+  start();
+  arm();
+  const std::int64_t guard = health().guard_pid;
+  const std::size_t before = line_->seen().size();
+  daemon_->kill(SIGKILL);
+  daemon_->wait_for_exit();
+  first_of_guard(before);
+  EXPECT_FALSE(has_ended(guard)) << "it keeps the device at zero";
+  line_->unplug();
+  EXPECT_TRUE(wait_for([&] { return has_ended(guard); }));
+}
+
 TEST_F(PenProcess, ends_in_order_with_zero_and_starts_disarmed) {
   start();
   arm();
