@@ -13,6 +13,7 @@
 #include "base/log.h"
 #include "daemon/common/service.h"
 #include "daemon/common/watchdog.h"
+#include "daemon/modeld/pen_field.h"
 #include "daemon/modeld/request_handler.h"
 #include "daemon/modeld/request_scheduler.h"
 #include "daemon/modeld/worker.h"
@@ -31,6 +32,12 @@ constexpr std::chrono::milliseconds kWatchPeriod{500};
 static_assert(kWatchPeriod.count() * 1'000'000 >= ipc::kHeartbeatPeriodNs);
 constexpr std::chrono::seconds kMaxUnserved{20};
 constexpr int kMaxPeriodsOfAppend = 10;  ///< that an append may take, in periods of the supervisor
+
+ipc::ServerLimits limits() {
+  ipc::ServerLimits limits;
+  limits.descriptors = 1;  // of follow_pen
+  return limits;
+}
 
 struct ModelProtocol {
   using Request = ipc::Request;
@@ -74,6 +81,8 @@ struct Daemon::Impl final : daemon::Service<ModelProtocol>, ClientChannel {
   ipc::SnapshotPublisher publisher;
   MonotonicClock clock;
   RequestHandler handler;
+  PenField pen_field;
+  std::optional<ipc::ClientId> pen_owner;  ///< the client that asked for it
   RequestScheduler scheduler;
   daemon::Heartbeat loop_heartbeat;
   daemon::HeartbeatMonitor append_monitor{"the journal can't be written", handler.appending(), kMaxPeriodsOfAppend};
@@ -94,11 +103,41 @@ struct Daemon::Impl final : daemon::Service<ModelProtocol>, ClientChannel {
     beat();
   }
   void request(ipc::ClientId client, std::uint64_t number, ipc::Request request, std::size_t bytes) override {
+    if (const auto* follow = std::get_if<ipc::FollowPen>(&request)) return follow_pen(client, number, *follow);
+    if (std::holds_alternative<ipc::LeavePen>(request)) return leave_pen(client, number);
     scheduler.request(client, number, std::move(request), bytes);
   }
   void left(ipc::ClientId client) override {
+    if (pen_owner == client) end_pen();
     scheduler.left(client);
     beat();
+  }
+
+  void follow_pen(ipc::ClientId client, std::uint64_t number, const ipc::FollowPen& request) {
+    Result<ipc::Descriptor> field = followed(client, request);
+    if (!field) return answer(client, number, ipc::failed_from(field.error()), {});
+    pen_owner = client;
+    std::vector<ipc::Descriptor> descriptors;
+    descriptors.push_back(std::move(*field));
+    answer(client, number, ipc::PenFollowed{}, std::move(descriptors));
+  }
+  Result<ipc::Descriptor> followed(ipc::ClientId client, const ipc::FollowPen& request) {
+    const Result<std::vector<ipc::Descriptor>> given = take_descriptors(client, 1);
+    if (!given) return fail(given.error());
+    const Result<mesh::field::Placement> placement = placement_of(request);
+    if (!placement) return fail(placement.error());
+    Result<ipc::PenPageReader> pen = ipc::PenPageReader::map(given->front());
+    if (!pen) return fail(std::move(pen.error()));
+    return pen_field.follow(std::move(*pen), *placement, request.placement);
+  }
+  void leave_pen(ipc::ClientId client, std::uint64_t number) {
+    if (pen_owner != client) return answer(client, number, ipc::Failed{"", 0, "you follow no pen"}, {});
+    end_pen();
+    answer(client, number, ipc::Done{}, {});
+  }
+  void end_pen() {
+    pen_field.leave();
+    pen_owner.reset();
   }
 
   // --- to the socket ---
@@ -111,6 +150,7 @@ struct Daemon::Impl final : daemon::Service<ModelProtocol>, ClientChannel {
     Service::tell_all(event);
     beat();
   }
+  void shown(const PublishedState& published) override { pen_field.show(published.document); }
   void post(std::function<void()> work) override { Service::post(std::move(work)); }
 
   /// The disk takes the journal. An append that fails is said to the client; one that hangs can only be cut off.
@@ -152,7 +192,7 @@ Result<Daemon> Daemon::start(const DaemonOptions& options) {
   Result<ipc::StatePage> page = ipc::StatePage::create();
   if (!page) return fail(std::move(page.error()));
   auto state = std::make_unique<Impl>(options, std::move(*lock), std::move(*page));
-  if (Result<void> listening = state->listen(ipc::model_socket_path(options.runtime_directory)); !listening)
+  if (Result<void> listening = state->listen(ipc::model_socket_path(options.runtime_directory), limits()); !listening)
     return fail(std::move(listening.error()));
   state->watch(options.hang_limit);
   state->begin();

@@ -313,15 +313,21 @@ void RequestScheduler::run(std::function<Outcome()> work, std::function<void(Out
 }
 
 void RequestScheduler::finish(ipc::ClientId client, std::uint64_t number, Outcome& outcome) {
-  if (outcome.published) published_ = std::move(*outcome.published);
-  outcome.published.reset();
+  take_published(outcome);
   // Answers first: before others see the new generation, its edit is acknowledged.
   if (clients_.contains(client)) channel_.answer(client, number, outcome.answer, std::move(outcome.descriptors));
   tell(outcome);
 }
 
+void RequestScheduler::take_published(Outcome& outcome) {
+  if (!outcome.published) return;
+  published_ = std::move(*outcome.published);
+  outcome.published.reset();
+  channel_.shown(published_);
+}
+
 void RequestScheduler::tell(Outcome& outcome) {
-  if (outcome.published) published_ = std::move(*outcome.published);
+  take_published(outcome);
   for (const ipc::Event& event : outcome.events) channel_.tell_all(event);
 }
 

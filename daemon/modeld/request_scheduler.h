@@ -27,6 +27,8 @@ class ClientChannel {
   virtual void answer(ipc::ClientId client, std::uint64_t number, const ipc::Answer& answer, std::vector<ipc::Descriptor> descriptors) = 0;
   virtual void tell(ipc::ClientId client, const ipc::Event& event) = 0;
   virtual void tell_all(const ipc::Event& event) = 0;
+  /// The document that is open, or none, is another state of itself or another one.
+  virtual void shown(const PublishedState&) {}
   /// Queues `work` for the loop's thread. May be called from any thread.
   virtual void post(std::function<void()> work) = 0;
 };
@@ -93,6 +95,7 @@ class RequestScheduler {
   void begin_drag(const Waiting& next, const mesh::document::Edit& edit);
   void finish(ipc::ClientId client, std::uint64_t number, Outcome& outcome);
   void tell(Outcome& outcome);
+  void take_published(Outcome& outcome);
   Progress watch(std::string what);
 
   ClientChannel& channel_;

@@ -176,6 +176,19 @@ Result<PreviewReader> Client::take_preview(const DragBegun& begun) {
   return PreviewReader::map(descriptors->front());
 }
 
+Result<Descriptor> Client::follow_pen(const FollowPen& request, const Descriptor& pen, std::chrono::milliseconds patience) {
+  Result<Descriptor> theirs = pen.duplicate();
+  if (!theirs) return fail(std::move(theirs.error()));
+  std::vector<Descriptor> descriptors;
+  descriptors.push_back(std::move(*theirs));
+  const Result<std::uint64_t> number = impl_->send(request, std::move(descriptors));
+  if (!number) return fail(number.error());
+  if (const Result<Answer> answer = impl_->wait(*number, patience); !answer) return fail(answer.error());
+  std::vector<Descriptor> fields = impl_->take_descriptors_of(*number);
+  if (fields.size() != 1) return fail(impl_->path().string(), "no page for the pen's field came");
+  return std::move(fields.front());
+}
+
 const Welcome& Client::welcome() const { return impl_->welcome; }
 std::optional<Health> Client::health() const { return impl_->page->health(); }
 int Client::descriptor() const { return impl_->descriptor(); }

@@ -59,6 +59,11 @@ class Client {
   /// The preview that came with a DragBegun answer.
   Result<PreviewReader> take_preview(const DragBegun& begun);
 
+  /// Hands the state page of the pen's process over and waits for the page with the fields, which that process attaches. Errors: as of
+  /// `call`.
+  Result<Descriptor> follow_pen(const FollowPen& request, const Descriptor& pen,
+                                std::chrono::milliseconds patience = std::chrono::seconds(10));
+
   const Welcome& welcome() const;
   /// modeld's health, read from its state page without a request; empty before its first heartbeat.
   std::optional<Health> health() const;

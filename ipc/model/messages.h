@@ -108,9 +108,19 @@ struct GetSnapshot {
 struct ReturnSnapshot {  ///< no answer
   std::uint64_t lease = 0;
 };
+/// Follows a haptic pen: modeld keeps the distances to the shells near it in a page. A second one replaces pen and placement. It ends with
+/// LeavePen or the client's connection. pen_mm = scale * turn * position + shift_mm.
+struct FollowPen {                         ///< descriptor: the state page of the pen's process (ipc/pen/page.h)
+  std::uint64_t placement = 0;             ///< number of this map from the model to the pen's space; the fields have it
+  std::array<double, 4> turn{1, 0, 0, 0};  ///< a unit quaternion, real part first
+  std::array<double, 3> shift_mm{};
+  double scale = 1;  ///< millimetres of the pen for one length of the deck
+};
+struct LeavePen {};
 
-using Request = std::variant<Hello, Open, Save, Close, ApplyEdit, BeginDrag, DragStep, CommitDrag, CancelDrag, Cancel, Count, GetQuality,
-                             FindShells, PreviewEdit, FindFollowedEdges, GetField, ShareCamera, GetState, GetSnapshot, ReturnSnapshot>;
+using Request =
+    std::variant<Hello, Open, Save, Close, ApplyEdit, BeginDrag, DragStep, CommitDrag, CancelDrag, Cancel, Count, GetQuality, FindShells,
+                 PreviewEdit, FindFollowedEdges, GetField, ShareCamera, GetState, GetSnapshot, ReturnSnapshot, FollowPen, LeavePen>;
 
 // --- answers (Failed and Done: ipc/wire/answers.h) ---
 struct Welcome {
@@ -223,8 +233,9 @@ struct Snapshot {  ///< descriptors: the table, then the segments listed in new_
   std::vector<std::uint64_t> segments;      ///< used by the table, in its order
   std::vector<std::uint64_t> new_segments;  ///< those sent with this message, in this order
 };
+struct PenFollowed {};  ///< descriptor: the page with the fields (ipc/pen/haptic_field_page.h)
 using Answer = std::variant<Failed, Done, Welcome, DocumentState, Saved, SaveWould, Edited, Counted, Quality, ShellsFound, EditPreviewed,
-                            FollowedEdges, DragBegun, Snapshot, FieldMade>;
+                            FollowedEdges, DragBegun, Snapshot, FieldMade, PenFollowed>;
 
 // --- events; sent to every client ---
 struct GenerationPublished {

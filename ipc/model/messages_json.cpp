@@ -34,6 +34,10 @@ PRISMESH_MESSAGE(ipc::ShareCamera, "share_camera", f("camera", m.camera));
 PRISMESH_MESSAGE(ipc::CameraMoved, "camera_moved", f("client", m.client), f("camera", m.camera));
 PRISMESH_MESSAGE(ipc::GetSnapshot, "get_snapshot", f("generation", m.generation), f("have_segments", m.have_segments));
 PRISMESH_MESSAGE(ipc::ReturnSnapshot, "return_snapshot", f("lease", m.lease));
+PRISMESH_MESSAGE(ipc::FollowPen, "follow_pen", f("placement", m.placement), f("turn", m.turn), f("shift_mm", m.shift_mm),
+                 f("scale", m.scale));
+PRISMESH_MESSAGE(ipc::LeavePen, "leave_pen", );
+PRISMESH_MESSAGE(ipc::PenFollowed, "pen_followed", );
 PRISMESH_MESSAGE(ipc::Welcome, "welcome", f("protocol", m.protocol), f("version", m.version), f("client", m.client));
 PRISMESH_MESSAGE(ipc::DocumentState, "state", f("open", m.open), f("busy", m.busy), f("path", m.path), f("length_unit", m.length_unit),
                  f("length_unit_guessed", m.length_unit_guessed), f("target_size", m.target_size),

@@ -31,6 +31,9 @@ Role needed(const PreviewEdit&) { return Role::edit; }
 Role needed(const FindFollowedEdges&) { return Role::edit; }
 // This turns the pictures of others.
 Role needed(const ShareCamera&) { return Role::edit; }
+// Whoever hands the field on to the pen's process needs this role there. The document stays as it is.
+Role needed(const FollowPen&) { return Role::devices; }
+Role needed(const LeavePen&) { return Role::devices; }
 
 }  // namespace
 

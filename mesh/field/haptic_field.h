@@ -16,11 +16,11 @@ struct FieldState {
   std::uint64_t generation = 0;
 };
 
-/// Of the field that the reader acquired last. Null: none.
+/// Null: none.
 struct EarlierField {
-  const HapticField* field = nullptr;
-  FieldState state;           ///< that it was made of
-  spatial::FloatBox changed;  ///< contains each shell that has changed since, as it was and as it is (BoxTree::Update::changed)
+  const HapticField* field = nullptr;  ///< whose blocks may be taken over: the newest is best
+  FieldState state;                    ///< of the field that the reader acquired last: what has moved is told since this one
+  spatial::FloatBox changed;  ///< contains each shell that has changed since `field`, as it was and as it is (BoxTree::Update::changed)
 };
 
 /// Fills all of a field but `number`, `time_ns` and `placement`. Of an earlier field of the same placement, the blocks are taken over where

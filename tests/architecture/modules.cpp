@@ -56,7 +56,7 @@ const std::vector<Module>& modules() {
       {"ipc/model", {"ipc/wire", "mesh/document"}},
 
       {"daemon/common", {"ipc/wire"}},
-      {"daemon/modeld", {"ipc/model", "daemon/common", "drivers/settings"}},
+      {"daemon/modeld", {"ipc/model", "ipc/pen", "mesh/field", "daemon/common", "drivers/settings"}},
       {"daemon/deviced/realtime", {"base"}},
       {"daemon/deviced/pen", {"ipc/pen", "daemon/common", "daemon/deviced/realtime", "drivers/haptic_pen/framed", "drivers/settings"}},
       {"daemon/deviced",

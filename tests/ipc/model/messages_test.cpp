@@ -31,6 +31,14 @@ TEST(Messages, requests_survive_a_round_trip) {
   EXPECT_EQ(std::get<DragStep>(step->request).by[0], 1.0 / 3);
   EXPECT_EQ(std::get<DragStep>(step->request).by[2], 1e-300);
 
+  const auto follow = decode_request(encode_request(1, FollowPen{7, {0, 0.6, 0, 0.8}, {1.0 / 3, -2, 3}, 0.1}).value());
+  ASSERT_TRUE(follow) << follow.error().message;
+  const auto& followed = std::get<FollowPen>(follow->request);
+  EXPECT_EQ(followed.placement, 7u);
+  EXPECT_EQ(followed.turn, (std::array<double, 4>{0, 0.6, 0, 0.8}));
+  EXPECT_EQ(followed.shift_mm, (std::array<double, 3>{1.0 / 3, -2, 3}));
+  EXPECT_EQ(followed.scale, 0.1);
+
   const auto count = decode_request(encode_request(2, Count{"part:3", mesh::select::EntityKind::part}).value());
   ASSERT_TRUE(count) << count.error().message;
   EXPECT_EQ(std::get<Count>(count->request).expr, "part:3");
@@ -199,8 +207,8 @@ std::size_t place_of() {
 }
 
 TEST(RolesOfRequests, are_these) {
-  const std::vector<std::size_t> looks{place_of<Hello>(),    place_of<Count>(),    place_of<GetQuality>(),  place_of<FindShells>(),
-                                       place_of<GetField>(), place_of<GetState>(), place_of<GetSnapshot>(), place_of<ReturnSnapshot>()};
+  std::vector<std::size_t> looks{place_of<Hello>(),    place_of<Count>(),    place_of<GetQuality>(),  place_of<FindShells>(),
+                                 place_of<GetField>(), place_of<GetState>(), place_of<GetSnapshot>(), place_of<ReturnSnapshot>()};
   std::vector<std::size_t> watch, edit, devices, offer, serve;
   requests_of<Request>(Role::watch, watch);
   requests_of<Request>(Role::edit, edit);
@@ -208,8 +216,10 @@ TEST(RolesOfRequests, are_these) {
   requests_of<Request>(Role::offer, offer);
   requests_of<Request>(Role::serve, serve);
   EXPECT_THAT(watch, testing::UnorderedElementsAreArray(looks));
-  EXPECT_EQ(devices, watch) << "of the document, a user of devices only looks";
-  EXPECT_EQ(edit.size(), std::variant_size_v<Request>) << "all";
+  const std::vector<std::size_t> of_devices{place_of<FollowPen>(), place_of<LeavePen>()};
+  looks.insert(looks.end(), of_devices.begin(), of_devices.end());
+  EXPECT_THAT(devices, testing::UnorderedElementsAreArray(looks)) << "of the document, a user of devices only looks";
+  EXPECT_EQ(edit.size(), std::variant_size_v<Request> - of_devices.size()) << "all but those of devices";
   EXPECT_TRUE(offer.empty());
   EXPECT_TRUE(serve.empty());
 }
