@@ -79,10 +79,12 @@ std::optional<CurveSegment> crossing_of(const Triangle& a, const Sides& sides_a,
   // b's from its third to its second. A swap turns that triangle's normal, and so the side on which the other one's corner is.
   if (sides_b[one] < 0) std::swap(second, third);
   if (sides_a[first] < 0) std::swap(two, three);
-  const auto precedes = [&](std::size_t of_a, std::size_t of_b) { return orientation(a[first], a[of_a], b[one], b[of_b]); };
+  const auto precedes = [&, first = first, one = one](std::size_t of_a, std::size_t of_b) {
+    return orientation(a[first], a[of_a], b[one], b[of_b]);
+  };
   if (!(precedes(second, two) < 0 && precedes(third, three) > 0)) return std::nullopt;
-  const auto end_a = [&](std::size_t corner) { return meeting_point(a, sides_a, first, corner); };
-  const auto end_b = [&](std::size_t corner) { return meeting_point(b, sides_b, one, corner); };
+  const auto end_a = [&, first = first](std::size_t corner) { return meeting_point(a, sides_a, first, corner); };
+  const auto end_b = [&, one = one](std::size_t corner) { return meeting_point(b, sides_b, one, corner); };
   return CurveSegment{precedes(second, three) < 0 ? end_b(three) : end_a(second), precedes(third, two) < 0 ? end_a(third) : end_b(two)};
 }
 
