@@ -38,7 +38,7 @@ TEST(EditKinds, groups_say_what_an_edit_changes) {
   EXPECT_THAT(names_of(EditGroup::selection), ElementsAre("grow", "invert", "select", "select_lasso", "select_region", "shrink"));
   EXPECT_THAT(names_of(EditGroup::parts),
               ElementsAre("hide", "lock", "only", "reverse", "set_criteria", "set_target_size", "show", "unlock"));
-  EXPECT_THAT(names_of(EditGroup::shaping), ElementsAre("lift", "rotate", "slide", "translate"));
+  EXPECT_THAT(names_of(EditGroup::shaping), ElementsAre("lift", "move", "rotate", "slide", "translate"));
   EXPECT_THAT(names_of(EditGroup::mending), ElementsAre("collapse", "merge", "relax", "repair", "split", "swap"));
   EXPECT_THAT(names_of(EditGroup::step), ElementsAre("redo", "undo"));
 }
