@@ -126,8 +126,10 @@ std::vector<float> Drag::composites_at(std::span<const Vec3> positions) const {
   return composites;
 }
 
-Worsening Drag::worsening() const {
-  const std::vector<float> before = composites_at(motion_->start), now = composites_at(positions_);
+Worsening Drag::worsening() {
+  if (composites_before_.empty()) composites_before_ = composites_at(motion_->start);
+  const std::vector<float>& before = composites_before_;
+  const std::vector<float> now = composites_at(positions_);
   std::size_t worst = now.size();
   for (std::size_t s = 0; s < now.size(); ++s)
     if (now[s] < before[s] - kWorseBy && (worst == now.size() || now[s] < now[worst])) worst = s;

@@ -49,8 +49,8 @@ class Drag {
   const std::vector<quality::ShellState>& states() const { return states_; }  ///< of shells()
   const quality::Counts& counts() const { return counts_; }                   ///< of the whole document at this step
 
-  /// At this step. Costs twice the judging of a step.
-  Worsening worsening() const;
+  /// At this step. Costs the judging of a step once more, the first time twice.
+  Worsening worsening();
 
   /// The edit at the last step's displacement, with the grab's id and coordinates filled in.
   Edit edit() const;
@@ -69,6 +69,7 @@ class Drag {
   std::vector<Vec3> fixed_;
   std::vector<quality::ShellProperties> properties_;  ///< of shells_
   std::vector<quality::ShellState> states_;
+  std::vector<float> composites_before_;  ///< of shells_, once `worsening` was asked for
   quality::Counts counts_elsewhere_;  ///< of the shells that don't change
   quality::Counts counts_;
 };
