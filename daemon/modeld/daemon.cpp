@@ -151,6 +151,8 @@ struct Daemon::Impl final : daemon::Service<ModelProtocol>, ClientChannel {
     beat();
   }
   void shown(const PublishedState& published) override { pen_field.show(published.document); }
+  bool follows_pen() const override { return pen_owner.has_value(); }
+  void felt(const std::optional<DragFeel>& feel) override { pen_field.show_drag(feel); }
   void post(std::function<void()> work) override { Service::post(std::move(work)); }
 
   /// The disk takes the journal. An append that fails is said to the client; one that hangs can only be cut off.

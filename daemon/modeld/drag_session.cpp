@@ -1,5 +1,7 @@
 #include "daemon/modeld/drag_session.h"
 
+#include <utility>
+
 namespace prismesh::modeld {
 
 Result<DragSession> DragSession::begin(std::uint64_t number, const mesh::document::Document& document, const mesh::document::Edit& edit) {
@@ -30,6 +32,12 @@ void DragSession::step(const ipc::DragStep& step) {
   drag_.step({mesh::Vec3(step.by[0], step.by[1], step.by[2]), step.distance, step.degrees});
   preview_.publish(step.sequence, drag_.positions(), drag_.states(), drag_.counts());
   moved_ = true;
+}
+
+DragFeel DragSession::feel() {
+  auto model = std::make_shared<mesh::Model>(base_->model);
+  for (std::size_t i = 0; i < drag_.nodes().size(); ++i) model->positions.set(drag_.nodes()[i].value, drag_.positions()[i]);
+  return {std::move(model), drag_.worsening()};
 }
 
 }  // namespace prismesh::modeld

@@ -1,11 +1,19 @@
 // A drag under way: the core's drag and the preview page that its frames go to.
 #pragma once
 
+#include <memory>
+
 #include "ipc/model/messages.h"
 #include "ipc/model/preview.h"
 #include "mesh/document/drag.h"
 
 namespace prismesh::modeld {
+
+/// What the haptic pen feels of a drag's step.
+struct DragFeel {
+  std::shared_ptr<const mesh::Model> model;  ///< with the displaced nodes
+  mesh::document::Worsening worsening;
+};
 
 class DragSession {
  public:
@@ -17,6 +25,8 @@ class DragSession {
   /// Computes the displaced nodes and the states of the shells they touch, and publishes them as a frame.
   void step(const ipc::DragStep& step);
   bool moved() const { return moved_; }
+  /// At the last step.
+  DragFeel feel();
   /// Returns the edit that the drag's last step amounts to.
   mesh::document::Edit edit() const { return drag_.edit(); }
 

@@ -11,6 +11,7 @@
 
 #include "base/log.h"
 #include "mesh/field/brick.h"
+#include "mesh/field/guides.h"
 
 namespace prismesh::modeld {
 
@@ -20,6 +21,8 @@ constexpr std::chrono::milliseconds kFieldPeriod{4};
 constexpr std::chrono::milliseconds kPauseWithoutMemory{1000};
 /// What is older than 100 ms fades (drivers/haptics/limits.h), so a field that stays true is published again with a new time.
 constexpr std::int64_t kFieldRenewalNs = 40'000'000;
+/// Of a drag whose worst shell fails; drivers/haptics caps it again.
+constexpr double kFullResistanceNewton = 2;
 constexpr std::size_t kKeptStates = 4;  ///< the pen's process may be some fields behind
 constexpr double kMaxPlaceMm = 1e6;     ///< of poses and shifts; no pen reaches farther
 constexpr double kMaxScale = 1e6;       ///< and its inverse
@@ -74,10 +77,18 @@ void PenField::leave() {
 
 void PenField::show(const std::shared_ptr<const mesh::document::Document>& document) {
   Shown shown;
-  if (document) shown = {0, document->generations[document->cursor], document->opened};
+  if (document) shown = {0, document->generations[document->cursor], document->opened, {}};
   const std::lock_guard lock(mutex_);
   shown.count = shown_.count + 1;
   std::swap(shown_, shown);
+}
+
+void PenField::show_drag(const std::optional<DragFeel>& feel) {
+  std::optional<DragFeel> last = feel;
+  const std::lock_guard lock(mutex_);
+  if (!shown_.drag && !last) return;
+  ++shown_.count;
+  shown_.drag.swap(last);
 }
 
 void PenField::run(const std::stop_token& stop) {
@@ -130,16 +141,38 @@ void PenField::step(const Turn& turn) {
   publish(turn, field);
 }
 
-/// Brings the tree to the generation that is shown. Its shells get a new number only if they differ.
+/// The model that is shown, or dragged, without the shells of hidden parts; null: no document is open.
+std::shared_ptr<const mesh::Model> PenField::felt_model(const Shown& shown) {
+  if (!shown.generation) return nullptr;
+  const mesh::document::Generation& generation = *shown.generation;
+  std::shared_ptr<const mesh::Model> whole(shown.generation, &generation.model);
+  if (shown.drag) whole = shown.drag->model;
+  const std::vector<mesh::document::PartState>& parts = *generation.parts;
+  if (std::none_of(parts.begin(), parts.end(), [](const mesh::document::PartState& part) { return part.hidden; })) {
+    felt_shells_.reset();
+    return whole;
+  }
+  if (!felt_shells_ || felt_shells_->generation != generation.number || !is_same_owner(felt_shells_->opened, shown.opened)) {
+    felt_shells_ = {generation.number, shown.opened, generation.model.shell_nodes};
+    for (std::size_t s = 0; s < generation.model.shell_count(); ++s)
+      if (const mesh::PartIndex part = generation.model.shell_parts[s]; part.valid() && parts[part.value].hidden)
+        felt_shells_->nodes.set(s, mesh::ShellNodes{});
+  }
+  auto felt = std::make_shared<mesh::Model>(*whole);
+  felt->shell_nodes = felt_shells_->nodes;
+  return felt;
+}
+
+/// Brings the tree to what is shown. Its shells get a new number only if they differ.
 void PenField::take(const Shown& shown) {
-  if (!shown.generation || states_.empty() || !is_same_owner(shown.opened, taken_.opened)) {
+  model_ = felt_model(shown);
+  if (!model_ || states_.empty() || !is_same_owner(shown.opened, taken_.opened)) {
     states_.clear();
     has_field_ = false;
-    mesh::spatial::BoxTree tree = shown.generation ? mesh::spatial::BoxTree(shown.generation->model) : mesh::spatial::BoxTree();
-    states_.push_back({std::move(tree), ++last_generation_});
+    states_.push_back({model_ ? mesh::spatial::BoxTree(*model_) : mesh::spatial::BoxTree(), ++last_generation_});
   } else {
     ShellState next = states_.back();
-    const mesh::spatial::BoxTree::Update update = next.tree.follow(shown.generation->model);
+    const mesh::spatial::BoxTree::Update update = next.tree.follow(*model_);
     if (update.changed.empty()) {
       states_.back().tree = std::move(next.tree);
     } else {
@@ -149,7 +182,7 @@ void PenField::take(const Shown& shown) {
       if (states_.size() > kKeptStates) states_.erase(states_.begin());
     }
   }
-  taken_ = {shown.count, nullptr, shown.opened};
+  taken_ = {shown.count, nullptr, shown.opened, {}};
 }
 
 void PenField::compute(const Turn& turn, const ipc::PenState& pen) {
@@ -166,7 +199,9 @@ void PenField::compute(const Turn& turn, const ipc::PenState& pen) {
   mesh::field::fill_field({&states_.back().tree, states_.back().generation}, earlier, turn.followed->placement, place_mm, field);
   ++computed_;
   field.time_ns = turn.now_ns;
-  field.placement = turn.followed->number;
+  field.placement = guides_.placement = turn.followed->number;
+  guides_.count = 0;
+  if (model_) mesh::field::find_guides(*model_, states_.back().tree, turn.followed->placement, place_mm, guides_);
   if (!publish(turn, field)) return;
   front_ = 1 - front_;
   has_field_ = true;
@@ -174,10 +209,26 @@ void PenField::compute(const Turn& turn, const ipc::PenState& pen) {
   changed_ = {};
 }
 
-/// Returns false if this pen isn't followed any more.
+/// What resists a drag's step.
+HapticResistance PenField::resistance(const Turn& turn) {
+  HapticResistance resistance{turn.followed->number, turn.now_ns, 0, {0, 0, 0}};
+  if (!turn.shown.drag) return resistance;
+  const mesh::document::Worsening& worsening = turn.shown.drag->worsening;
+  if (worsening.direction.isZero()) return resistance;
+  resistance.newton = kFullResistanceNewton * worsening.badness;
+  Eigen::Map<mesh::Vec3>(resistance.direction) = turn.followed->placement.turn * worsening.direction;
+  return resistance;
+}
+
+/// Publishes the field with what belongs to it. Returns false if this pen isn't followed any more.
 bool PenField::publish(const Turn& turn, const HapticField& field) {
+  guides_.time_ns = turn.now_ns;
+  const HapticResistance resisting = resistance(turn);
   const std::lock_guard lock(mutex_);
   if (followed_ != turn.followed) return false;
+  // The reader copies guides and resistance when a new field arrives.
+  turn.followed->page->set_guides(guides_);
+  turn.followed->page->set_resistance(resisting);
   turn.followed->page->publish(field);
   return true;
 }
@@ -191,6 +242,8 @@ void PenField::forget() {
   states_.clear();
   states_.shrink_to_fit();
   taken_ = {};
+  felt_shells_.reset();
+  model_.reset();
   computed_for_.reset();
   fields_ = {};
   has_field_ = false;

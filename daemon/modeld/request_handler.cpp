@@ -167,8 +167,12 @@ Outcome RequestHandler::begin_drag(std::uint64_t number, const mesh::document::E
   return outcome;
 }
 
-void RequestHandler::step_drag(const ipc::DragStep& step) {
-  if (drag_) drag_->step(step);
+Outcome RequestHandler::step_drag(const ipc::DragStep& step, bool for_pen) {
+  Outcome outcome;
+  if (!drag_) return outcome;
+  drag_->step(step);
+  if (for_pen) outcome.felt = drag_->feel();
+  return outcome;
 }
 
 Outcome RequestHandler::commit_drag() {

@@ -27,6 +27,7 @@ struct Outcome {
   std::vector<ipc::Descriptor> descriptors;
   std::vector<ipc::Event> events;
   std::optional<PublishedState> published;  ///< if it changed
+  std::optional<DragFeel> felt{};           ///< of a drag's step, if it was asked for
 };
 
 class RequestHandler {
@@ -51,7 +52,7 @@ class RequestHandler {
   Outcome close(const ipc::Close& request);
   /// Answers DragBegun, or Failed; then no drag is under way.
   Outcome begin_drag(std::uint64_t number, const mesh::document::Edit& edit);
-  void step_drag(const ipc::DragStep& step);
+  Outcome step_drag(const ipc::DragStep& step, bool for_pen);
   Outcome commit_drag();
   Outcome cancel_drag(const std::string& why);
 

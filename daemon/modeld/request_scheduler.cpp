@@ -214,18 +214,17 @@ void RequestScheduler::pump_drag() {
     return [this, client, number](Outcome& outcome) {
       drag_.reset();
       finish(client, number, outcome);
+      channel_.felt({});
     };
   };
   if (drag.orphaned) return run([this] { return handler_.cancel_drag("its client has gone"); }, over(0, 0));
   if (drag.newest) {
     const ipc::DragStep step = *std::exchange(drag.newest, std::nullopt);
     stepping_ = true;
-    return run(
-        [this, step] {
-          handler_.step_drag(step);
-          return Outcome{};
-        },
-        [](Outcome&) {});
+    return run([this, step, for_pen = channel_.follows_pen()] { return handler_.step_drag(step, for_pen); },
+               [this](Outcome& outcome) {
+                 if (outcome.felt) channel_.felt(outcome.felt);
+               });
   }
   if (!drag.ending) return;
   const Ending ending = *drag.ending;

@@ -29,6 +29,10 @@ class ClientChannel {
   virtual void tell_all(const ipc::Event& event) = 0;
   /// The document that is open, or none, is another state of itself or another one.
   virtual void shown(const PublishedState&) {}
+  /// Whether somebody wants to feel drags.
+  virtual bool follows_pen() const { return false; }
+  /// A step of a drag, if `follows_pen`; nothing: the drag is over.
+  virtual void felt(const std::optional<DragFeel>&) {}
   /// Queues `work` for the loop's thread. May be called from any thread.
   virtual void post(std::function<void()> work) = 0;
 };

@@ -14,6 +14,9 @@ namespace prismesh::mesh::document {
 namespace {
 
 constexpr std::size_t kDragGrain = 1024;  ///< of a parallel range: some 100 microseconds
+constexpr float kFeltComposite = 0.5F;    ///< a worse shell's badness is above 0
+constexpr float kWorseBy = 0.005F;        ///< composites that differ by less are the same
+constexpr double kTrialStep = 0.01;       ///< of a derivative, in the shell's longest side
 
 /// The source of each corner's coordinates: >= 0 the index of the moving node, < 0 the complement of the fixed point's index.
 class Corners {
@@ -109,6 +112,60 @@ void Drag::step(const Displacement& displacement) {
     counts[begin / kDragGrain] = sum;
   });
   counts_ = total(counts_elsewhere_, counts);
+}
+
+std::vector<float> Drag::composites_at(std::span<const Vec3> positions) const {
+  const quality::LimitsByPart limits = quality::limits_for(sized(*base_->judging));
+  std::vector<float> composites(corners_.size());
+  std::vector<quality::ShellState> states(corners_.size());
+  parallel_for(corners_.size(), kDragGrain, [&](std::size_t begin, std::size_t end) {
+    const std::size_t count = end - begin;
+    quality::judge_points({positions, fixed_, std::span(corners_).subspan(begin, count), std::span(properties_).subspan(begin, count)},
+                          limits, std::span(states).subspan(begin, count), std::span(composites).subspan(begin, count));
+  });
+  return composites;
+}
+
+Worsening Drag::worsening() {
+  if (composites_before_.empty()) composites_before_ = composites_at(motion_->start);
+  const std::vector<float>& before = composites_before_;
+  const std::vector<float> now = composites_at(positions_);
+  std::size_t worst = now.size();
+  for (std::size_t s = 0; s < now.size(); ++s)
+    if (now[s] < before[s] - kWorseBy && (worst == now.size() || now[s] < now[worst])) worst = s;
+  if (worst == now.size() || now[worst] >= kFeltComposite) return {};
+  const double badness = std::min(1.0, (kFeltComposite - static_cast<double>(now[worst])) / kFeltComposite);
+  return {badness, worsening_direction(worst, now[worst])};
+}
+
+/// Moves on by a small step along each axis, and takes the shell's composites there.
+Vec3 Drag::worsening_direction(std::size_t shell, float composite) const {
+  if (motion_->kind != ShapingKind::translate && motion_->kind != ShapingKind::move) return Vec3::Zero();
+  const std::array<std::int32_t, 4>& corners = corners_[shell];
+  const auto at = [&](std::size_t corner) {
+    const std::int32_t from = corners[corner];
+    return from >= 0 ? positions_[static_cast<std::size_t>(from)] : fixed_[static_cast<std::size_t>(~from)];
+  };
+  double longest = 0;
+  for (std::size_t corner = 0; corner < 4; ++corner) longest = std::max(longest, (at((corner + 1) % 4) - at(corner)).norm());
+  const double step = kTrialStep * longest;
+  if (!(step > 0) || !std::isfinite(step)) return Vec3::Zero();
+
+  const quality::LimitsByPart limits = quality::limits_for(sized(*base_->judging));
+  std::vector<Vec3> positions(positions_.size());
+  Vec3 slope;
+  for (int axis = 0; axis < 3; ++axis) {
+    Displacement moved = displacement_;
+    moved.by[axis] += step;
+    positions_at(*motion_, moved, positions);
+    quality::ShellState state;
+    float there = composite;
+    quality::judge_points({positions, fixed_, std::span(&corners, 1), std::span(&properties_[shell], 1)}, limits, std::span(&state, 1),
+                          std::span(&there, 1));
+    slope[axis] = static_cast<double>(there) - static_cast<double>(composite);
+  }
+  const double steepness = slope.norm();
+  return steepness > 1e-6 ? Vec3(-slope / steepness) : Vec3(Vec3::Zero());
 }
 
 Edit Drag::edit() const {

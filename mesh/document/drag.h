@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "base/error.h"
@@ -18,6 +19,16 @@
 namespace prismesh::mesh::document {
 
 struct Motion;
+
+/// How a drag spoils elements.
+struct Worsening {
+  /// Of the shells that are worse than before the drag, the worst: 0 halfway between ideal and failing (a composite of 0.5) and better, 1
+  /// where it fails. Composites: mesh/quality/composite.h.
+  double badness = 0;
+  /// Unit vector, deck's axes: moving this way makes that shell worse fastest. Zero where no way does, or for a drag other than a
+  /// Translate or Move.
+  Vec3 direction = Vec3::Zero();
+};
 
 class Drag {
  public:
@@ -38,6 +49,9 @@ class Drag {
   const std::vector<quality::ShellState>& states() const { return states_; }  ///< of shells()
   const quality::Counts& counts() const { return counts_; }                   ///< of the whole document at this step
 
+  /// At this step. Costs the judging of a step once more, the first time twice.
+  Worsening worsening();
+
   /// The edit at the last step's displacement, with the grab's id and coordinates filled in.
   Edit edit() const;
 
@@ -46,12 +60,16 @@ class Drag {
   std::shared_ptr<const Motion> motion_;  ///< as applying the edit uses it
   Edit edit_;
   ShellSet shells_;
+  std::vector<float> composites_at(std::span<const Vec3> positions) const;
+  Vec3 worsening_direction(std::size_t shell, float composite) const;
+
   Displacement displacement_;
   std::vector<Vec3> positions_;
   std::vector<std::array<std::int32_t, 4>> corners_;  ///< of shells_: >= 0 index into nodes(), < 0: ~index into fixed_
   std::vector<Vec3> fixed_;
   std::vector<quality::ShellProperties> properties_;  ///< of shells_
   std::vector<quality::ShellState> states_;
+  std::vector<float> composites_before_;  ///< of shells_, once `worsening` was asked for
   quality::Counts counts_elsewhere_;  ///< of the shells that don't change
   quality::Counts counts_;
 };

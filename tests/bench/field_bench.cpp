@@ -8,6 +8,7 @@
 #include <benchmark/benchmark.h>
 
 #include "mesh/field/brick.h"
+#include "mesh/field/guides.h"
 #include "mesh/model/adjacency.h"
 #include "mesh/spatial/box_tree.h"
 #include "mesh/spatial/closest_point.h"
@@ -126,6 +127,18 @@ BENCHMARK_CAPTURE(pairs_anywhere, life_size, 1.0)->Apply(sizes)->Unit(benchmark:
 BENCHMARK_CAPTURE(pairs_anywhere, threefold, 3.0)->Apply(sizes)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(pairs_anywhere, a_third, 0.3)->Apply(sizes)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(pairs_anywhere, a_tenth, 0.1)->Apply(sizes)->Unit(benchmark::kMillisecond);
+
+void guides_anywhere(benchmark::State& state, double scale) {
+  const Model& model = model_of(state);
+  const spatial::BoxTree& tree = tree_of(state);
+  const field::Placement placement = life_times(scale);
+  HapticGuides guides{};
+  std::size_t i = 0;
+  for (auto _ : state) field::find_guides(model, tree, placement, placement.to_pen(pen_at(model, i++)), guides);
+}
+BENCHMARK_CAPTURE(guides_anywhere, life_size, 1.0)->Apply(sizes)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(guides_anywhere, a_tenth, 0.1)->Apply(sizes)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(guides_anywhere, a_hundredth, 0.01)->Apply(sizes)->Unit(benchmark::kMicrosecond);
 
 /// Pairs of bricks, 200 a second, of a pen that moves to and fro, 3 mm of the model over the surface, at a speed in mm/s; blocks are taken
 /// over.

@@ -39,6 +39,11 @@ struct HandMadePen {
     state.field_generation = has_generation;
     page.set_state(state);
   }
+  /// Reads a field that was published after all that was read of the page.
+  bool wait_for_next() {
+    const std::uint64_t newest = reader->newest();
+    return wait_for([newest](const HapticField& each) { return each.number > newest + 1; });
+  }
   /// Reads fields until one is as wished.
   bool wait_for(const std::function<bool(const HapticField&)>& is_wished) {
     const auto until = std::chrono::steady_clock::now() + kPenPatience;
@@ -198,6 +203,111 @@ TEST_F(PenFields, follow_an_edit) {
   ASSERT_TRUE(client_->call(ipc::ApplyEdit{select}, kPenPatience));
   ASSERT_TRUE(pen_.wait_for([&](const HapticField& field) { return field.number > number + 2; }));
   EXPECT_EQ(pen_.field->mesh_generation, last);
+}
+
+TEST_F(PenFields, follow_a_drag_and_return_when_it_is_cancelled) {
+  open();
+  const Vec3 sheet_mm = place_of(1313);
+  pen_.move_to(sheet_mm);
+  follow({1});
+  ASSERT_TRUE(pen_.wait_for([](const HapticField&) { return true; }));
+  const std::uint64_t before = pen_.field->mesh_generation;
+  EXPECT_EQ(pen_.reader->resistance().value().newton, 0);
+
+  mesh::document::Move move;
+  move.shaping.on = "1313";
+  const auto begun = client_->call(ipc::BeginDrag{move}, kPenPatience);
+  ASSERT_TRUE(begun) << begun.error().text();
+  const std::uint64_t drag = std::get<ipc::DragBegun>(*begun).drag;
+  ASSERT_TRUE(client_->send(ipc::DragStep{drag, 1, {0, 0, 0.25}, 0, 0}));
+  ASSERT_TRUE(pen_.wait_for([&](const HapticField& field) { return field.mesh_generation != before; }));
+  EXPECT_EQ(pen_.field->before_generation, before);
+  EXPECT_NEAR(pen_.field->max_moved_mm, 0.25, 1e-6);
+  EXPECT_EQ(pen_.reader->resistance().value().newton, 0) << "nothing has become bad";
+
+  // Far off its place the shells about the node are bad; on the way they resist. The model is still as it was.
+  ASSERT_TRUE(client_->send(ipc::DragStep{drag, 2, {0, 0, 9}, 0, 0}));
+  const auto resists = [this](const HapticField&) { return pen_.reader->resistance().value().newton > 0; };
+  ASSERT_TRUE(pen_.wait_for(resists));
+  ASSERT_TRUE(pen_.wait_for_next());
+  const HapticResistance resistance = pen_.reader->resistance().value();
+  EXPECT_EQ(resistance.placement, 1u);
+  EXPECT_LE(resistance.newton, 2);
+  EXPECT_GT(Vec3(resistance.direction).z(), 0.5);
+  EXPECT_EQ(place_of(1313), sheet_mm);
+
+  const std::uint64_t dragged = pen_.field->mesh_generation;
+  ASSERT_TRUE(client_->call(ipc::CancelDrag{drag}, kPenPatience));
+  ASSERT_TRUE(pen_.wait_for([&](const HapticField& field) { return field.mesh_generation > dragged; }));
+  EXPECT_EQ(pen_.reader->resistance().value().newton, 0);
+  EXPECT_GT(expect_distances(pen_.field->fine, tree(), Placement(), kFineReach), 100);
+}
+
+TEST_F(PenFields, are_those_of_the_edit_when_a_drag_is_committed) {
+  open();
+  pen_.move_to(place_of(1313));
+  follow({1});
+  ASSERT_TRUE(pen_.wait_for([](const HapticField&) { return true; }));
+  mesh::document::Move move;
+  move.shaping.on = "1313";
+  const auto begun = client_->call(ipc::BeginDrag{move}, kPenPatience);
+  ASSERT_TRUE(begun) << begun.error().text();
+  const std::uint64_t drag = std::get<ipc::DragBegun>(*begun).drag;
+  ASSERT_TRUE(client_->send(ipc::DragStep{drag, 1, {0, 0, 9}, 0, 0}));
+  ASSERT_TRUE(pen_.wait_for([this](const HapticField&) { return pen_.reader->resistance().value().newton > 0; }));
+  ASSERT_TRUE(pen_.wait_for_next());
+  const std::uint64_t dragged = pen_.field->mesh_generation;
+  ASSERT_TRUE(client_->call(ipc::CommitDrag{drag}, kPenPatience));
+  ASSERT_TRUE(pen_.wait_for([this](const HapticField&) { return pen_.reader->resistance().value().newton == 0; }));
+  ASSERT_TRUE(pen_.wait_for_next());
+  EXPECT_EQ(pen_.field->mesh_generation, dragged) << "the edit is what was felt, bit for bit";
+  EXPECT_GT(expect_distances(pen_.field->fine, tree(), Placement(), kFineReach), 100);
+}
+
+TEST_F(PenFields, leave_hidden_parts_out) {
+  open();
+  const Vec3 sheet_mm = place_of(1313);
+  pen_.move_to(sheet_mm);
+  follow({1});
+  ASSERT_TRUE(pen_.wait_for([](const HapticField&) { return true; }));
+  const std::uint64_t whole = pen_.field->mesh_generation;
+  EXPECT_GT(expect_distances(pen_.field->fine, tree(), Placement(), kFineReach), 100);
+  EXPECT_GT(pen_.reader->guides().value().count, 0);
+  const auto apply = [this](const mesh::document::Edit& edit) { ASSERT_TRUE(client_->call(ipc::ApplyEdit{edit}, kPenPatience)); };
+
+  mesh::document::SetParts hide;
+  hide.on = "part:7";
+  hide.action = mesh::document::VisibilityAction::hide;
+  apply(hide);
+  ASSERT_TRUE(pen_.wait_for([&](const HapticField& field) { return field.mesh_generation != whole; }));
+  const std::uint64_t hidden = pen_.field->mesh_generation;
+  EXPECT_EQ(expect_distances(pen_.field->fine, {}, Placement(), kFineReach), 0);
+  EXPECT_EQ(pen_.reader->guides().value().count, 0);
+
+  move_node_up(0.25);  // nobody feels that
+  const std::uint64_t number = pen_.field->number;
+  ASSERT_TRUE(pen_.wait_for([&](const HapticField& field) { return field.number > number + 2; }));
+  EXPECT_EQ(pen_.field->mesh_generation, hidden);
+
+  apply(mesh::document::Undo{});
+  apply(mesh::document::Undo{});
+  ASSERT_TRUE(pen_.wait_for([&](const HapticField& field) { return field.mesh_generation != hidden; }));
+  EXPECT_GT(expect_distances(pen_.field->fine, tree(), Placement(), kFineReach), 100);
+}
+
+TEST_F(PenFields, come_with_the_guides_near_the_pen) {
+  open();
+  const Placement twice{Eigen::Matrix3d::Identity(), Vec3(0, 0, 2), 2};
+  const Vec3 node_mm = twice.to_pen(place_of(1313));
+  pen_.move_to(node_mm + Vec3(0.5, 0.5, 0));
+  follow({4, {1, 0, 0, 0}, {0, 0, 2}, 2});
+  ASSERT_TRUE(pen_.wait_for([&](const HapticField& field) { return has(field.fine, node_mm, 9); }));
+  const HapticGuides guides = pen_.reader->guides().value();
+  EXPECT_EQ(guides.placement, 4u);
+  EXPECT_GE(guides.time_ns, pen_.field->time_ns);
+  ASSERT_GT(guides.count, 0);
+  EXPECT_LT((Vec3(guides.guides[0].from_mm) - node_mm).norm(), 1e-9);
+  EXPECT_LT((Vec3(guides.guides[0].to_mm) - node_mm).norm(), 1e-9);
 }
 
 TEST_F(PenFields, are_empty_without_a_document) {

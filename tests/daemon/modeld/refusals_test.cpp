@@ -411,7 +411,7 @@ TEST_F(BenchRefusals, requests_for_shared_memory_are_refused_until_there_is_some
 
 TEST_F(BenchRefusals, a_drag_whose_edit_fails_tells_every_client_why) {
   ASSERT_EQ(words(handler_.begin_drag(7, dragged()).answer), "done");
-  handler_.step_drag({7, 1, {0, 0, 0.5}, 0, 0});
+  handler_.step_drag({7, 1, {0, 0, 0.5}, 0, 0}, true);
   for (const fs::directory_entry& entry : fs::directory_iterator(folder_.state()))
     if (entry.path().extension() == ".journal") fs::remove(entry.path());
   const Outcome outcome = handler_.commit_drag();
