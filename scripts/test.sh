@@ -180,7 +180,8 @@ run_all_tests() {
 
 # run_soak MINUTES: runs what takes too long for every change. For half of the time the fuzz targets run; for the other half sanitized tests
 # run in random order and with new random numbers: random edits, daemons killed in the middle. Besides, it tries states of the disk after a
-# power cut: some 1,700 for each minute (100,800 in an hour), and 100 million ticks of the haptic pen's safety.
+# power cut: some 1,700 for each minute (100,800 in an hour), 100 million ticks of the haptic pen's safety, and 10
+# million steps of the pen on real decks.
 run_soak() {
   local seconds=$(($1 * 60)) targets name end seed=$RANDOM status
   mkdir -p out/test out/soak
@@ -211,6 +212,12 @@ run_soak() {
   if step "build: release" configure_and_build release -DPRISMESH_TESTS=ON -- drivers_haptics_test; then
     PRISMESH_SEED=$seed PRISMESH_SAFETY_TICKS=100000000 build/bin/drivers_haptics_test --gtest_filter='*Long*' --gtest_brief=1 </dev/null || status=$?
     count_one "drivers_haptics_test with PRISMESH_SEED=$seed" "$status"
+  fi
+  say "Ten million steps of the haptic pen on real decks"
+  status=0
+  if step "build: release" configure_and_build release -DPRISMESH_TESTS=ON -- touch_test; then
+    PRISMESH_SEED=$seed PRISMESH_TOUCH_STEPS=2000000 build/bin/touch_test --gtest_brief=1 </dev/null || status=$?
+    count_one "touch_test with PRISMESH_SEED=$seed" "$status"
   fi
   say "The demo on every real deck with shells"
   status=0
