@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <limits>
 #include <random>
 #include <string>
@@ -12,7 +14,6 @@
 
 #include <gtest/gtest.h>
 
-#include "base/file.h"
 #include "tests/support/places.h"
 #include "tests/support/seed.h"
 
@@ -204,9 +205,9 @@ TEST(Replay, of_a_record_that_begins_latched_compares_from_the_first_tick) {
 TEST(Replay, of_each_record_of_a_fault_decides_as_it_did) {
   int records = 0;
   for (const auto& entry : std::filesystem::directory_iterator(test::source_folder() / "tests/drivers/haptics/records")) {
-    const auto bytes = read_file(entry.path());
-    ASSERT_TRUE(bytes) << bytes.error().text();
-    const auto record = parse_pen_record(bytes->text(), entry.path().string());
+    std::ifstream file(entry.path());
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    const auto record = parse_pen_record(text, entry.path().string());
     ASSERT_TRUE(record) << record.error().text();
     const ReplayReport report = replay(*record);
     EXPECT_EQ(report.differing, 0u) << entry.path() << ", tick " << report.first_difference.value_or(0);
