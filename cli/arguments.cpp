@@ -2,11 +2,14 @@
 #include "cli/arguments.h"
 
 #include <array>
+#include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <ostream>
 #include <string_view>
+#include <system_error>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -94,6 +97,30 @@ mesh::document::JudgingRule criteria_rule(const std::string& text) {
   return rule;
 }
 
+/// Nothing where the text isn't a finite number.
+std::optional<double> finite_number(const std::string& text) {
+  double number = 0;
+  const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (failed != std::errc{} || end != text.data() + text.size() || !std::isfinite(number)) return std::nullopt;
+  return number;
+}
+
+/// Nothing for a word.
+std::optional<double> positive_number(const std::string& text) {
+  const std::optional<double> number = finite_number(text);
+  return number && *number > 0 ? number : std::nullopt;
+}
+
+std::string wrong_gap(const std::string& text) {
+  const std::optional<double> number = finite_number(text);
+  return number && *number >= 0 ? "" : "must be a number of at least 0, not \"" + text + "\"";
+}
+
+std::string wrong_thickness(const std::string& text) {
+  if (text == "contact" || text == "section" || positive_number(text)) return "";
+  return "must be contact, section or a number greater than 0, not \"" + text + "\"";
+}
+
 void add_common(Parser& parser) {
   CLI::App& app = parser.app;
   Common& common = parser.common;
@@ -143,8 +170,17 @@ void add_reading_commands(Parser& parser) {
   distance_app->add_option("--to", distance_options->to, "another expression")->required();
 
   const auto [penetrations_app, penetrations_options] =
-      add_command<PenetrationsOptions>(parser, "penetrations", "find where shells pass through each other", penetrations);
+      add_command<PenetrationsOptions>(parser, "penetrations", "find where shells cross or are too close", penetrations);
   names_file(penetrations_app->add_option("DECK", penetrations_options->deck, "the deck's main file"))->required();
+  add_optional(penetrations_app, "--select", penetrations_options->select, "only where one of these shells takes part, e.g. part:3");
+  penetrations_app->add_option("--gap", penetrations_options->gap, "how far faces must be apart, in the deck's length unit (default: 0)")
+      ->check(CLI::Validator([](const std::string& text) { return wrong_gap(text); }, "LENGTH"));
+  penetrations_app
+      ->add_option_function<std::string>(
+          "--thickness", [options = penetrations_options](const std::string& text) { options->thickness = positive_number(text); },
+          "section: that of elements and sections; a number: for all shells; contact (default): as section, since the contacts of decks "
+          "aren't read yet")
+      ->check(CLI::Validator([](const std::string& text) { return wrong_thickness(text); }, "contact|section|LENGTH"));
 }
 
 /// An option --elements of a command that makes the sample.

@@ -70,6 +70,9 @@ int distance(const DistanceOptions& options, const Common& common, const Context
 
 struct PenetrationsOptions {
   std::filesystem::path deck;
+  std::optional<std::string> select;  ///< an expression
+  double gap = 0;                     ///< deck's length unit
+  std::optional<double> thickness;    ///< for all shells; nothing: that of elements and sections
 };
 int penetrations(const PenetrationsOptions& options, const Common& common, const Context& context);
 

@@ -158,19 +158,32 @@ std::string distance_json(const Gap& gap) {
       .dump();
 }
 
-std::string penetrations_json(const std::vector<CrossingRegion>& regions) {
+std::string penetrations_json(const ContactFigures& figures) {
   Json list = Json::array();
-  for (const CrossingRegion& region : regions)
-    list.push_back({{"kind", "perforation"},
-                    {"a", region.a},
-                    {"b", region.b},
-                    {"shells_a", region.shells_a},
-                    {"shells_b", region.shells_b},
-                    {"length", region.length},
-                    {"depth", region.depth ? Json{{"max", *region.depth}} : Json(nullptr)},
-                    {"at", point(region.at)},
-                    {"worst", {region.shells.first, region.shells.second}}});
-  return Json{{"perforations", regions.size()}, {"penetrations", nullptr}, {"regions", list}}.dump();
+  for (const ContactRegion& region : figures.regions) {
+    Json entry{{"kind", region.kind},
+               {"a", region.a},
+               {"b", region.b},
+               {"shells_a", region.shells_a},
+               {"shells_b", region.shells_b},
+               {"depth", region.max_depth ? Json{{"max", *region.max_depth}, {"mean", region.mean_depth}} : Json(nullptr)},
+               {"area", region.area},
+               {"at", point(region.at)},
+               {"worst", {region.shells.first, region.shells.second}},
+               {"joined", region.joined},
+               {"contact", nullptr},
+               {"clear", false},
+               {"why", "whether it can be separated isn't computed yet"},
+               {"thickness_from", region.thickness_from}};
+    if (region.kind == "perforation") entry["length"] = region.length;
+    list.push_back(std::move(entry));
+  }
+  return Json{{"perforations", figures.perforations},
+              {"penetrations", figures.penetrations},
+              {"clearances", figures.clearances},
+              {"regions", list},
+              {"without_thickness", figures.without_thickness}}
+      .dump();
 }
 
 namespace {

@@ -24,7 +24,7 @@ std::string failed_edit_json(const std::string& edit, const std::string& reason)
 std::string replay_json(const std::vector<mesh::document::ReplayStep>& steps, const std::string& deck_hash, bool other_deck);
 std::string diff_json(const Difference& difference);
 std::string distance_json(const Gap& gap);
-std::string penetrations_json(const std::vector<CrossingRegion>& regions);
+std::string penetrations_json(const ContactFigures& figures);
 std::string bench_json(const BenchReport& report);
 /// Of `doctor`.
 std::string findings_json(const std::vector<Finding>& findings);

@@ -103,8 +103,8 @@ void join_tied(const Model& model, const NodeOnSheet& tied, OutOfSight out_of_si
 
 }  // namespace
 
-JoinedSheets find_joined_sheets(const Model& model, std::span<const NodeSet> cards, OutOfSight out_of_sight,
-                                std::span<const NodeOnSheet> on_sheets) {
+std::vector<JoinedSheets::Pair> find_joints(const Model& model, std::span<const NodeSet> cards, OutOfSight out_of_sight,
+                                            std::span<const NodeOnSheet> on_sheets) {
   std::vector<NodeSet> joints;
   add_elements(model, joints);
   joints.insert(joints.end(), cards.begin(), cards.end());
@@ -113,6 +113,12 @@ JoinedSheets find_joined_sheets(const Model& model, std::span<const NodeSet> car
   for (const NodeSet& ends : joints) join(model, ends, shells_at_ends, pairs);
   for (const NodeOnSheet& each : on_sheets)
     if (each.tied) join_tied(model, each, out_of_sight, pairs);
+  return pairs;
+}
+
+JoinedSheets find_joined_sheets(const Model& model, std::span<const NodeSet> cards, OutOfSight out_of_sight,
+                                std::span<const NodeOnSheet> on_sheets) {
+  std::vector<JoinedSheets::Pair> pairs = find_joints(model, cards, out_of_sight, on_sheets);
   std::vector<std::uint32_t> sheet_numbers = number_sheets(model, out_of_sight);
   const std::vector<JoinedSheets::Pair> touching = find_touching(model, sheet_numbers, pairs, out_of_sight);
   pairs.insert(pairs.end(), touching.begin(), touching.end());

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "mesh/connections/joined_sheets.h"
 #include "mesh/connections/node_on_sheet.h"
@@ -14,9 +15,13 @@ namespace prismesh::mesh::connections {
 /// Finds the shells that beams, solids, thick shells, springs and connectors join, and those that `cards` join: the nodes that each of the
 /// deck's welds, rivets and small rigid bodies names. An end lies on the visible shells at its node; if no shell uses the node, on the
 /// closest visible shell if that is within its placed reach (mesh/connections/sheet_reach.h). Two ends join their shells unless these touch
-/// each other (then the element stiffens a sheet) or lie farther apart than a joint may extend (kMaxJointInSides). A sheet without any
-/// joint to another is joined to those it touches: find_touching() says when. Of `on_sheets` the tied nodes join the shells at them to the
-/// shell they are tied to, as long as they lie on it; other nodes don't count. Costs the shells of the model.
+/// each other (then the element stiffens a sheet) or lie farther apart than a joint may extend (kMaxJointInSides). Of `on_sheets` the tied
+/// nodes join the shells at them to the shell they are tied to, as long as they lie on it; other nodes don't count. Each pair in one order,
+/// some several times. Costs the elements, and the shells of the model if an end is no node of a shell.
+std::vector<JoinedSheets::Pair> find_joints(const Model& model, std::span<const NodeSet> cards, OutOfSight out_of_sight,
+                                            std::span<const NodeOnSheet> on_sheets = {});
+
+/// These, and a sheet without any joint to another is joined to those it touches: find_touching() says when. Costs the shells of the model.
 JoinedSheets find_joined_sheets(const Model& model, std::span<const NodeSet> cards, OutOfSight out_of_sight,
                                 std::span<const NodeOnSheet> on_sheets = {});
 

@@ -10,7 +10,8 @@
 namespace prismesh::mesh::contact {
 
 /// Groups pairs of shells into regions: two pairs of the same two parts belong together if the shells of each side are the same or share a
-/// node. Returns the regions, the longest curve first, then by parts and shells. Precondition: the pairs are ascending.
+/// node. Returns the regions, the longest curve first, then by parts and shells. Preconditions: the pairs are ascending,
+/// the model has its adjacency.
 std::vector<Perforation> group_crossings(const Model& model, const std::vector<ShellCrossing>& crossings);
 
 /// Both steps. Preconditions and what counts as a crossing: find_shell_crossings.

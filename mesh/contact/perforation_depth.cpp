@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <map>
+#include <utility>
 
 #include <Eigen/Geometry>
 
 #include "base/parallel_for.h"
 #include "mesh/contact/cut_pieces.h"
-#include "mesh/contact/shell_triangles.h"
+#include "mesh/contact/shell_area.h"
 #include "mesh/model/adjacency.h"
 #include "mesh/quality/shell_properties.h"
 #include "mesh/spatial/closest_point.h"
@@ -20,35 +20,34 @@ namespace {
 constexpr std::size_t kDepthGrain = 256;
 
 /// The area of the shells at nodes, in equal shares of each shell's corners.
-double area_of(const Model& model, std::span<const NodeIndex> nodes) {
+double area_at(const Model& model, std::span<const NodeIndex> nodes) {
   double area = 0;
   for (const NodeIndex node : nodes)
-    for (const ShellIndex shell : model.adjacency->shells_of(node)) {
-      double of_shell = 0;
-      each_shell_triangle(model, shell,
-                          [&](const ShellTriangle& t) { of_shell += (t.at[1] - t.at[0]).cross(t.at[2] - t.at[0]).norm() / 2; });
-      area += of_shell / model.shell(shell).corners();
-    }
+    for (const ShellIndex shell : model.adjacency->shells_of(node)) area += area_of(model, shell) / model.shell(shell).corners();
   return area;
 }
 
-/// The trees of parts, each made when it is first asked for.
-class PartTrees {
- public:
-  explicit PartTrees(const Model& model) : model_(model) {}
-
-  const spatial::ShellTree& of(PartIndex part) {
-    if (const auto at = trees_.find(part); at != trees_.end()) return at->second;
-    ShellSet shells;
-    for (std::size_t s = 0; s < model_.shell_count(); ++s)
-      if (model_.shell_parts[s] == part && !model_.is_removed(ShellIndex(s))) shells.push_back(ShellIndex(s));
-    return trees_.try_emplace(part, model_, shells).first->second;
+/// The shells of a part among which are the closest ones of all nodes. No node is farther from the part than from `known` shells of it.
+ShellSet shells_about(const Model& model, const spatial::BoxTree& tree, PartIndex part, const ShellSet& known,
+                      std::span<const NodeIndex> nodes) {
+  const spatial::ShellTree known_tree(model, known);
+  Eigen::AlignedBox3d box;
+  double max_distance = 0;
+  for (const NodeIndex node : nodes) {
+    const auto closest = known_tree.closest(model.position(node));
+    if (!closest) continue;
+    box.extend(model.position(node));
+    max_distance = std::max(max_distance, closest->distance);
   }
-
- private:
-  const Model& model_;
-  std::map<PartIndex, spatial::ShellTree> trees_;
-};
+  if (box.isEmpty()) return known;
+  ShellSet about;
+  tree.near_box(box.min(), box.max(), max_distance, [&](ShellIndex shell, const spatial::FloatBox&) {
+    if (model.shell_parts[shell.value] == part) about.push_back(shell);
+    return true;
+  });
+  std::sort(about.begin(), about.end());
+  return about;
+}
 
 double thickness_at(const Model& model, NodeIndex node) {
   float max = 0;
@@ -70,25 +69,35 @@ void measure(const Model& model, const spatial::ShellTree& other, double thickne
   if (max == of_node.end() || *max < 0) return;
   depth.max = *max;
   depth.deepest = depth.entering[static_cast<std::size_t>(max - of_node.begin())];
+  double sum = 0;
+  std::size_t measured = 0;
+  for (const double each : of_node)
+    if (each >= 0) sum += each, ++measured;
+  depth.mean = sum / static_cast<double>(measured);
+}
+
+PerforationDepth depth_of(const Model& model, const spatial::BoxTree& tree, const Perforation& perforation, double thickness_share) {
+  PerforationDepth depth;
+  std::vector<NodeIndex> of_a = cut_off_nodes(model, perforation, true), of_b = cut_off_nodes(model, perforation, false);
+  depth.a_enters = !of_a.empty() && (of_b.empty() || area_at(model, of_a) <= area_at(model, of_b));
+  depth.entering = std::move(depth.a_enters ? of_a : of_b);
+  if (depth.entering.empty()) return depth;
+  const ShellSet& crossed = depth.a_enters ? perforation.shells_b : perforation.shells_a;
+  const PartIndex other = depth.a_enters ? perforation.part_b : perforation.part_a;
+  const bool is_fold = perforation.part_a == perforation.part_b;
+  measure(model, spatial::ShellTree(model, is_fold ? crossed : shells_about(model, tree, other, crossed, depth.entering)), thickness_share,
+          depth);
+  return depth;
 }
 
 }  // namespace
 
-std::vector<PerforationDepth> perforation_depths(const Model& model, std::span<const Perforation> perforations, double thickness_share) {
-  PartTrees trees(model);
-  std::vector<PerforationDepth> depths;
-  depths.reserve(perforations.size());
-  for (const Perforation& perforation : perforations) {
-    PerforationDepth& depth = depths.emplace_back();
-    std::vector<NodeIndex> of_a = cut_off_nodes(model, perforation, true), of_b = cut_off_nodes(model, perforation, false);
-    depth.a_enters = !of_a.empty() && (of_b.empty() || area_of(model, of_a) <= area_of(model, of_b));
-    depth.entering = std::move(depth.a_enters ? of_a : of_b);
-    if (depth.entering.empty()) continue;
-    if (perforation.part_a == perforation.part_b)
-      measure(model, spatial::ShellTree(model, depth.a_enters ? perforation.shells_b : perforation.shells_a), thickness_share, depth);
-    else
-      measure(model, trees.of(depth.a_enters ? perforation.part_b : perforation.part_a), thickness_share, depth);
-  }
+std::vector<PerforationDepth> perforation_depths(const Model& model, const spatial::BoxTree& tree,
+                                                 std::span<const Perforation> perforations, double thickness_share) {
+  std::vector<PerforationDepth> depths(perforations.size());
+  parallel_for(perforations.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) depths[i] = depth_of(model, tree, perforations[i], thickness_share);
+  });
   return depths;
 }
 

@@ -6,6 +6,7 @@
 
 #include "mesh/contact/perforations.h"
 #include "mesh/model/model.h"
+#include "mesh/spatial/box_tree.h"
 
 namespace prismesh::mesh::contact {
 
@@ -13,7 +14,9 @@ namespace prismesh::mesh::contact {
 /// that are connected over shared nodes. The pieces that it cuts off enter; where both sheets are cut, those with the smaller area. The
 /// depth is the greatest distance of an entering node from the other part's shells; in folds of one part, from the shells that cross. A
 /// curve that cuts nothing off is half through: its depth isn't known. `thickness_share` of the thicknesses of both shells is added: 0.5 to
-/// separate their faces, 0 for their middle surfaces. Precondition: the model has its adjacency.
-std::vector<PerforationDepth> perforation_depths(const Model& model, std::span<const Perforation> perforations, double thickness_share);
+/// separate their faces, 0 for their middle surfaces. Costs what is cut off, and the other
+/// part's shells about it. Preconditions: the model has its adjacency; the tree is that of the model.
+std::vector<PerforationDepth> perforation_depths(const Model& model, const spatial::BoxTree& tree,
+                                                 std::span<const Perforation> perforations, double thickness_share);
 
 }  // namespace prismesh::mesh::contact

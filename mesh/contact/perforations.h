@@ -24,7 +24,8 @@ struct PerforationDepth {
   bool a_enters = false;      ///< else side b does
   NodeSet entering;           ///< nodes of the piece that the curve cuts off, ascending; empty: half through
   std::optional<double> max;  ///< the greatest distance of such a node from the other side; nothing: half through
-  NodeIndex deepest;          ///< where that is; of equal ones the first
+  double mean = 0;            ///< over those nodes
+  NodeIndex deepest;          ///< where the max is; of equal ones the first
 };
 
 }  // namespace prismesh::mesh::contact

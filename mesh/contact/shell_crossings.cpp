@@ -8,6 +8,7 @@
 
 #include "base/parallel_for.h"
 #include "mesh/contact/orientation.h"
+#include "mesh/contact/shares_node.h"
 #include "mesh/contact/shell_triangles.h"
 #include "mesh/model/adjacency.h"
 
@@ -19,12 +20,6 @@ constexpr std::size_t kCrossingGrain = 1024;
 
 bool on_one_side(const Sides& sides) {
   return (sides[0] > 0 && sides[1] > 0 && sides[2] > 0) || (sides[0] < 0 && sides[1] < 0 && sides[2] < 0);
-}
-
-bool share_a_node(const ShellNodes& a, const ShellNodes& b) {
-  for (const NodeIndex of_a : a.node)
-    if (std::find(b.node.begin(), b.node.end(), of_a) != b.node.end()) return true;
-  return false;
 }
 
 /// A side of a triangle: from the node with the lower index, so that the shells at it compute the same bits.

@@ -1,10 +1,11 @@
-// Measures the search for crossing shells in a million shells: one curved sheet, which has none, and two sheets that wave through each
-// other.
+// Measures the search for crossing shells, and for shells that are too close, in a million shells: one curved sheet, which has none, and
+// two sheets that wave.
 #include <cmath>
 #include <memory>
 
 #include <benchmark/benchmark.h>
 
+#include "mesh/contact/find_penetrations.h"
 #include "mesh/contact/find_perforations.h"
 #include "mesh/contact/perforation_depth.h"
 #include "mesh/model/adjacency.h"
@@ -19,8 +20,8 @@ Model with_its_adjacency(Model model) {
   return model;
 }
 
-/// The upper half of the shells lies over the lower half, 5 mm away, and waves by 8 mm.
-Model two_layers() {
+/// The upper half of the shells lies over the lower half, 5 mm or so away, and waves by 8 mm.
+Model two_layers(double apart = 5) {
   Model model = million_quads();
   constexpr std::size_t kSide = 1000, kStride = kSide + 1;
   for (std::size_t s = kSide * kSide / 2; s < kSide * kSide; ++s) model.shell_parts.set(s, PartIndex(std::size_t{1}));
@@ -28,7 +29,7 @@ Model two_layers() {
   for (std::size_t j = kStride / 2 + 1; j < kStride; ++j)
     for (std::size_t i = 0; i < kStride; ++i) {
       const Vec3& below = model.positions[(j - kStride / 2 - 1) * kStride + i];
-      model.positions.set(j * kStride + i, below + Vec3(1.3, 2.1, 5 + 8 * std::sin(below.x() / 90) * std::cos(below.y() / 110)));
+      model.positions.set(j * kStride + i, below + Vec3(1.3, 2.1, apart + 8 * std::sin(below.x() / 90) * std::cos(below.y() / 110)));
     }
   return model;
 }
@@ -56,10 +57,33 @@ BENCHMARK(find_crossings)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 void find_depths(benchmark::State& state) {
   const Model model = with_its_adjacency(two_layers());
-  const auto found = contact::find_perforations(model, spatial::BoxTree(model));
-  for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(contact::perforation_depths(model, found, 0));
+  const spatial::BoxTree tree(model);
+  const auto found = contact::find_perforations(model, tree);
+  for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(contact::perforation_depths(model, tree, found, 0));
 }
 BENCHMARK(find_depths)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+void search_penetrations(benchmark::State& state, const Model& model, double of_all) {
+  const spatial::BoxTree tree(model);
+  const contact::ContactThickness thickness = contact::given_thickness(model, of_all);
+  const auto crossings = contact::find_shell_crossings(model, tree);
+  std::size_t regions = 0, pairs = 0;
+  for ([[maybe_unused]] auto _ : state) {
+    const auto found = contact::find_penetrations(model, tree, thickness, crossings);
+    regions = found.size(), pairs = 0;
+    for (const contact::Penetration& region : found) pairs += region.pairs.size();
+  }
+  state.counters["regions"] = static_cast<double>(regions);
+  state.counters["pairs"] = static_cast<double>(pairs);
+}
+/// Of one sheet, 1 mm and 8 mm thick with shells of 5 mm: there are none.
+void find_no_penetration(benchmark::State& state) { search_penetrations(state, with_its_adjacency(million_quads()), 1); }
+BENCHMARK(find_no_penetration)->Unit(benchmark::kMillisecond)->UseRealTime();
+void find_no_penetration_of_thick_shells(benchmark::State& state) { search_penetrations(state, with_its_adjacency(million_quads()), 8); }
+BENCHMARK(find_no_penetration_of_thick_shells)->Unit(benchmark::kMillisecond)->UseRealTime();
+/// Two layers, 2 to 18 mm apart.
+void find_penetrations(benchmark::State& state) { search_penetrations(state, with_its_adjacency(two_layers(10)), 3); }
+BENCHMARK(find_penetrations)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 }  // namespace
 }  // namespace prismesh::mesh::bench

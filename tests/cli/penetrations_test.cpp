@@ -1,4 +1,4 @@
-// penetrations lists where shells pass through each other.
+// penetrations lists where shells cross or are too close.
 #include "tests/cli/cli_fixture.h"
 
 namespace prismesh::cli {
@@ -16,12 +16,97 @@ std::string crossing_text(double until) {
          "*END\n";
 }
 
+/// A quad of 10 x 10 in the plane z = 0, two more beside each other at `height`, and one far away; part 1 is 1 thick, part 2 is 2 thick,
+/// part 3 has no section.
+std::string plates_text(double height) {
+  std::string text = "*KEYWORD\n*NODE\n";
+  text += node_card(1, 0, 0, 0) + node_card(2, 10, 0, 0) + node_card(3, 10, 10, 0) + node_card(4, 0, 10, 0);
+  text += node_card(11, 2, 2, height) + node_card(12, 5, 2, height) + node_card(13, 5, 8, height) + node_card(14, 2, 8, height);
+  text += node_card(15, 8, 2, height) + node_card(16, 8, 8, height);
+  text += node_card(21, 0, 0, 50) + node_card(22, 10, 0, 50) + node_card(23, 10, 10, 50) + node_card(24, 0, 10, 50);
+  text += "*ELEMENT_SHELL\n" + shell_card(1, 1, 1, 2, 3, 4) + shell_card(2, 2, 11, 12, 13, 14) + shell_card(3, 2, 12, 15, 16, 13) +
+          shell_card(4, 3, 21, 22, 23, 24);
+  text += "*PART\nfloor\n         1         1\n*PART\nroof\n         2         2\n";
+  text += "*SECTION_SHELL\n         1         2\n       1.0       1.0       1.0       1.0\n";
+  text += "*SECTION_SHELL\n         2         2\n       2.0       2.0       2.0       2.0\n";
+  return text + "*END\n";
+}
+
+TEST_F(Cli, penetrations_lists_what_is_too_close) {
+  const std::string deck = write("plates.k", plates_text(1.25));
+  const Outcome outcome = prismesh({"penetrations", deck, "--json"});
+  ASSERT_EQ(outcome.status, kDone) << outcome.err;
+  const json said = outcome.json();
+  EXPECT_EQ(said["perforations"], 0);
+  EXPECT_EQ(said["penetrations"], 1);
+  EXPECT_EQ(said["without_thickness"], (json{3}));
+  const json& region = said["regions"][0];
+  EXPECT_EQ(region["kind"], "penetration");
+  EXPECT_EQ(region["a"], "part:1");
+  EXPECT_EQ(region["b"], "part:2");
+  EXPECT_EQ(region["shells_a"], 1);
+  EXPECT_EQ(region["shells_b"], 2);
+  EXPECT_NEAR(region["depth"]["max"].get<double>(), 0.25, 1e-12);
+  EXPECT_NEAR(region["depth"]["mean"].get<double>(), 0.25, 1e-12);
+  EXPECT_NEAR(region["area"].get<double>(), 36, 1e-12);
+  EXPECT_NEAR(region["at"][2].get<double>(), 0.625, 1e-12);
+  EXPECT_EQ(region["worst"][0], "shell:1");
+  EXPECT_EQ(region["joined"], false);
+  EXPECT_EQ(region["contact"], nullptr);
+  EXPECT_EQ(region["clear"], false);
+  EXPECT_FALSE(region["why"].get<std::string>().empty());
+  EXPECT_EQ(region["thickness_from"], "section");
+  EXPECT_FALSE(region.contains("length"));
+  EXPECT_THAT(prismesh({"penetrations", deck}).out, ::testing::HasSubstr("part:1 floor and part:2 roof are too close, 0.25 mm deep"));
+}
+
+TEST_F(Cli, penetrations_takes_thickness_gap_and_selection) {
+  const std::string deck = write("plates.k", plates_text(1.75));
+  const auto regions = [&](std::vector<std::string> options) {
+    options.insert(options.begin(), {"penetrations", deck, "--json"});
+    const Outcome outcome = prismesh(options);
+    EXPECT_EQ(outcome.status, kDone) << outcome.err;
+    return outcome.json()["regions"];
+  };
+  EXPECT_TRUE(regions({}).empty());
+  EXPECT_TRUE(regions({"--thickness", "section"}).empty());
+  const json given = regions({"--thickness", "2"});
+  ASSERT_EQ(given.size(), 1u);
+  EXPECT_EQ(given[0]["thickness_from"], "given");
+  EXPECT_NEAR(given[0]["depth"]["max"].get<double>(), 0.25, 1e-12);
+  const json apart = regions({"--gap", "0.5"});
+  ASSERT_EQ(apart.size(), 1u);
+  EXPECT_EQ(apart[0]["kind"], "clearance");
+  EXPECT_THAT(prismesh({"penetrations", deck, "--gap", "0.5"}).out, ::testing::HasSubstr("are apart by less than the gap, 0.25 mm deep"));
+  EXPECT_EQ(prismesh({"penetrations", deck, "--gap", "0.5", "--json"}).json()["penetrations"], 0);
+  EXPECT_EQ(regions({"--thickness", "2", "--select", "shell:3"})[0]["shells_b"], 1);
+  EXPECT_TRUE(regions({"--thickness", "2", "--select", "part:3"}).empty());
+  EXPECT_EQ(prismesh({"penetrations", deck, "--select", "shell:99"}).status, kFailed);
+  for (const char* wrong : {"0", "-1", "thick", "nan", "1mm"})
+    EXPECT_EQ(prismesh({"penetrations", deck, "--thickness", wrong}).status, kWrongUsage) << wrong;
+  for (const char* wrong : {"-1", "wide", "inf"}) EXPECT_EQ(prismesh({"penetrations", deck, "--gap", wrong}).status, kWrongUsage) << wrong;
+}
+
+TEST_F(Cli, penetrations_says_where_a_weld_joins) {
+  std::string text = plates_text(1.25);
+  text.insert(text.find("*PART"), "*CONSTRAINED_SPOTWELD\n         3        16\n");
+  EXPECT_EQ(prismesh({"penetrations", write("welded.k", text), "--json"}).json()["regions"][0]["joined"], true);
+  EXPECT_THAT(prismesh({"penetrations", write("welded.k", text)}).out, ::testing::HasSubstr("; joined there"));
+}
+
+TEST_F(Cli, penetrations_of_selected_shells_that_cross) {
+  const std::string deck = write("crossing.k", crossing_text(8));
+  EXPECT_EQ(prismesh({"penetrations", deck, "--select", "shell:2", "--json"}).json()["perforations"], 1);
+  EXPECT_EQ(prismesh({"penetrations", deck, "--select", "shell:3", "--json"}).json()["perforations"], 0);
+}
+
 TEST_F(Cli, penetrations_lists_what_crosses) {
   const Outcome outcome = prismesh({"penetrations", write("crossing.k", crossing_text(8)), "--json"});
   ASSERT_EQ(outcome.status, kDone) << outcome.err;
   const json said = outcome.json();
   EXPECT_EQ(said["perforations"], 1);
-  EXPECT_EQ(said["penetrations"], nullptr);
+  EXPECT_EQ(said["penetrations"], 0);
+  EXPECT_EQ(said["without_thickness"], (json{1, 2}));
   const json& region = said["regions"][0];
   EXPECT_EQ(region["kind"], "perforation");
   EXPECT_EQ(region["a"], "part:1");
@@ -29,7 +114,12 @@ TEST_F(Cli, penetrations_lists_what_crosses) {
   EXPECT_EQ(region["shells_a"], 1);
   EXPECT_EQ(region["shells_b"], 1);
   EXPECT_NEAR(region["length"].get<double>(), 6, 1e-12);
-  EXPECT_EQ(region["depth"], (json{{"max", 1.0}}));
+  EXPECT_EQ(region["depth"], (json{{"max", 1.0}, {"mean", 1.0}}));
+  EXPECT_NEAR(region["area"].get<double>(), 24, 1e-12);
+  EXPECT_EQ(region["joined"], false);
+  EXPECT_EQ(region["contact"], nullptr);
+  EXPECT_EQ(region["clear"], false);
+  EXPECT_EQ(region["thickness_from"], "none");
   EXPECT_EQ(region["at"][2], -1);
   EXPECT_EQ(region["worst"], (json{"shell:1", "shell:2"}));
 }
@@ -43,7 +133,7 @@ TEST_F(Cli, penetrations_says_half_through) {
 TEST_F(Cli, penetrations_of_a_plate_are_none) {
   const std::string deck = write("plate.k", plate_text());
   EXPECT_EQ(prismesh({"penetrations", deck, "--json"}).json()["regions"], json::array());
-  EXPECT_EQ(prismesh({"penetrations", deck}).out, "no shells cross\n");
+  EXPECT_EQ(prismesh({"penetrations", deck}).out, "no shells cross or are too close\n");
 }
 
 }  // namespace

@@ -57,6 +57,15 @@ TEST(TouchingSheets, are_joined_if_they_lie_flat_on_each_other) {
   EXPECT_FALSE(joined(grids({level(0), tilted(0.5, 10, 18)}, 1), 0, 1)) << "60.9 degrees";
 }
 
+TEST(TouchingSheets, arent_joined_by_joints) {
+  EXPECT_TRUE(find_joints(grids({level(0), level(1)}, 1), {}, {}).empty());
+  const test::ElementSpec weld{ElementClass::beam, 1, 9, {13, 113}};
+  const Model welded = grids({level(0), level(1), level(2)}, 1, {weld});
+  const auto joints = find_joints(welded, {}, {});
+  EXPECT_EQ(joints.size(), 16u) << "four shells at each end";
+  for (const auto& [one, other] : joints) EXPECT_TRUE(one.value < 16 && other.value >= 16 && other.value < 32);
+}
+
 TEST(TouchingSheets, are_joined_only_where_no_joint_says_more) {
   const std::vector<std::function<Vec3(int, int)>> stack{level(0), level(1), level(2)};
   const test::ElementSpec weld{ElementClass::beam, 1, 9, {13, 113}}, other_weld{ElementClass::beam, 2, 9, {113, 213}};

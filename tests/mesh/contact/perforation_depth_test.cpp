@@ -16,7 +16,7 @@ using test::SheetsThatMeet;
 constexpr double kTurn = 3.14159265358979323846 / 180;
 
 std::vector<PerforationDepth> depths_of(const Model& model, double thickness_share = 0) {
-  return perforation_depths(model, test::perforations_of(model), thickness_share);
+  return perforation_depths(model, spatial::BoxTree(model), test::perforations_of(model), thickness_share);
 }
 PerforationDepth depth_of(const SheetsThatMeet& sheets) {
   const auto depths = depths_of(sheets.model());
@@ -37,6 +37,7 @@ TEST(PerforationDepth, of_a_sheet_that_stands_in_another) {
     EXPECT_FALSE(depth.a_enters) << "the plate isn't cut";
     ASSERT_TRUE(depth.max);
     EXPECT_NEAR(*depth.max, below, 1e-12);
+    EXPECT_NEAR(depth.mean, below > 1 ? below - 0.5 : below, 1e-12) << "of one row or two";
     EXPECT_EQ(depth.entering.size(), below > 1 ? 14u : 7u);
     EXPECT_EQ(sheets.model().position(depth.deepest).z(), -below);
   }
@@ -94,6 +95,16 @@ TEST(PerforationDepth, of_a_ball_through_a_plate) {
   const PerforationDepth depth = depth_of(sheets);
   ASSERT_TRUE(depth.max);
   EXPECT_NEAR(*depth.max, 0.8, 0.05);
+}
+
+TEST(PerforationDepth, of_a_piece_that_is_nearest_to_shells_away_from_the_curve) {
+  SheetsThatMeet sheets;  // a floor with a wall below its end, and a sheet that comes down through the floor and ends near the wall
+  sheets.add(1, 10, 10, [](int i, int j) { return j <= 5 ? Vec3(i - 5, j - 5, 0) : Vec3(i - 5, 0, 5 - j); });
+  sheets.add(2, 4, 12, [](int i, int j) { return Vec3(i - 2.2, 0.8 * (j - 8) - 3.5, 0.4 - 0.6 * (j - 8)); });
+  const PerforationDepth depth = depth_of(sheets);
+  ASSERT_TRUE(depth.max);
+  EXPECT_EQ(depth.entering.size(), 20u);
+  EXPECT_NEAR(*depth.max, 1.1, 1e-12) << "the row before the last one, from the wall; the last is 2 below the floor and 0.3 from the wall";
 }
 
 TEST(PerforationDepth, of_a_fold) {

@@ -1,0 +1,33 @@
+// The thickness with which each shell takes part in contact.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "mesh/model/model.h"
+
+namespace prismesh::mesh::contact {
+
+/// Where a part's contact thickness comes from.
+enum class ThicknessFrom : std::uint8_t {
+  none,     ///< no shell of the part has one
+  section,  ///< the element's own card, else the part's section
+  given,    ///< one number for all shells
+};
+std::string_view name(ThicknessFrom from);
+
+struct ContactThickness {
+  std::vector<double> of_shell;        ///< one a shell, deck's length unit; 0: none, the shell has no contact
+  std::vector<ThicknessFrom> of_part;  ///< one a part
+  std::vector<PartIndex> without;      ///< parts with shells of which at least one has none, ascending
+
+  ThicknessFrom from(PartIndex part) const { return part.valid() ? of_part[part.value] : ThicknessFrom::none; }
+};
+
+/// The element's own thickness, else that of its part's section. What isn't a finite number above 0 counts as none.
+ContactThickness section_thickness(const Model& model);
+/// The same thickness for every shell. Precondition: finite, above 0.
+ContactThickness given_thickness(const Model& model, double thickness);
+
+}  // namespace prismesh::mesh::contact
