@@ -295,6 +295,13 @@ void add_devices(Parser& parser) {
   auto* arm = app->add_flag("--arm-pen", options->arm_pen, "first arm the haptic pen, so that it may push");
   app->add_flag("--disarm-pen", options->disarm_pen, "first disarm the haptic pen")->excludes(arm);
   app->add_flag("--self-test", options->self_test, "measure the loop, the delay and the forces of the haptic pen for three seconds");
+  CLI::Option* record = add_optional(app, "--record", options->record,
+                                     "write what the haptic pen's loop does to a file: its last four seconds, and what follows");
+  app->add_option("--seconds", options->seconds, "how long to go on recording (default 10; 0: only what has been)")
+      ->needs(record)
+      ->check(CLI::Range(0.0, 86400.0));
+  add_optional(app, "--replay", options->replay, "run the pen's safety again on such a file, and say what it does otherwise")
+      ->excludes(record);
 }
 
 void add_doctor(Parser& parser) {

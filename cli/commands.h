@@ -121,12 +121,15 @@ int session(const SessionOptions& options, const Common& common, const Context& 
 /// Asks a running deviced.
 struct DevicesOptions {
   std::optional<std::filesystem::path> runtime_directory;
-  bool watch = false;       ///< print again each second
-  bool rearm = false;       ///< first enable a mask again that was stuck or switched itself off
-  bool reload = false;      ///< first make the daemon read settings and profile again
-  bool arm_pen = false;     ///< first arm the haptic pen
-  bool disarm_pen = false;  ///< first disarm it
-  bool self_test = false;   ///< measure the pen's loop for some seconds
+  bool watch = false;                           ///< print again each second
+  bool rearm = false;                           ///< first enable a mask again that was stuck or switched itself off
+  bool reload = false;                          ///< first make the daemon read settings and profile again
+  bool arm_pen = false;                         ///< first arm the haptic pen
+  bool disarm_pen = false;                      ///< first disarm it
+  bool self_test = false;                       ///< measure the pen's loop for some seconds
+  std::optional<std::filesystem::path> record;  ///< where to write what the pen's loop does
+  double seconds = 10;                          ///< for how long, besides what is known already
+  std::optional<std::filesystem::path> replay;  ///< a record on which the pen's safety is run again
 };
 int devices(const DevicesOptions& options, const Common& common, const Context& context);
 

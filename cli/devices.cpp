@@ -11,6 +11,7 @@
 #include "cli/device_figures.h"
 #include "cli/json_output.h"
 #include "cli/pen_look.h"
+#include "cli/pen_record.h"
 #include "cli/report_text.h"
 #include "ipc/device/client.h"
 
@@ -122,9 +123,20 @@ void watch(ipc::ReconnectingDeviceClient& connection, const DevicesOptions& opti
 }  // namespace
 
 int devices(const DevicesOptions& options, const Common& common, const Context& context) {
-  if (options.self_test) {
+  if (options.replay) {
+    const Result<ReplayedPen> replayed = replay_pen(*options.replay, common.json);
+    if (!replayed) {
+      say(context, replayed.error());
+      return kFailed;
+    }
+    context.out << replayed->text;
+    return replayed->same ? kDone : kFailed;
+  }
+  if (options.self_test || options.record) {
     const Result<void> acted = act_on_pen(options);
-    const Result<std::string> measured = acted ? pen_self_test(options) : Result<std::string>(fail(acted.error()));
+    const Result<std::string> measured = !acted           ? Result<std::string>(fail(acted.error()))
+                                         : options.record ? record_pen(options, context)
+                                                          : pen_self_test(options);
     if (!measured) {
       say(context, measured.error());
       return kFailed;

@@ -18,8 +18,13 @@ HapticLimits within(HapticLimits limits, const haptic_pen::PenLimits& device) {
 
 }  // namespace
 
+bool is_line_fault(const haptic_pen::PenReading& pen) {
+  return pen.trouble == haptic_pen::PenTrouble::io_error || pen.trouble == haptic_pen::PenTrouble::bad_reply;
+}
+
 HapticLoop::HapticLoop(const HapticLimits& limits, const haptic_pen::PenLimits& device, const SafetyRecord& stored)
     : max_stiffness_newton_m_(haptics::max_stiffness_newton_m(device, limits.period_ns)),
+      max_newton_(within(limits, device).max_newton),
       safety_(within(limits, device), device.max_axis_newton, stored) {}
 
 HapticAnswer HapticLoop::step(const HapticTick& tick) {
@@ -39,7 +44,7 @@ HapticAnswer HapticLoop::step(const HapticTick& tick) {
   input.position_mm = pose_.position_mm;
   input.measured_ns = pose_.measured_ns;
   input.ready = tick.pen.phase == haptic_pen::PenPhase::ready;
-  input.io_error = tick.pen.trouble == haptic_pen::PenTrouble::io_error || tick.pen.trouble == haptic_pen::PenTrouble::bad_reply;
+  input.io_error = is_line_fault(tick.pen);
   input.lost_replies = tick.pen.lost_replies;
   input.parts = answer.parts;
   input.rearm = tick.rearm;

@@ -29,16 +29,21 @@ struct HapticAnswer {
   double stiffness_newton_m = 0;  ///< after the device's bound
 };
 
+/// Whether the line to the pen is at fault, for the safety.
+bool is_line_fault(const haptic_pen::PenReading& pen);
+
 class HapticLoop {
  public:
   /// The smaller of the device's and our own limits hold. `stored`: see SafetyRecord.
   HapticLoop(const HapticLimits& limits, const haptic_pen::PenLimits& device, const SafetyRecord& stored = {});
   HapticAnswer step(const HapticTick& tick);
+  double max_newton() const { return max_newton_; }  ///< the smaller of both
 
  private:
   void take_pose(const haptic_pen::PenReading& pen);
 
   double max_stiffness_newton_m_;
+  double max_newton_;
   Safety safety_;
   Proxy proxy_;
   haptic_pen::PenPose pose_;

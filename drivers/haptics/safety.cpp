@@ -213,6 +213,8 @@ void Safety::enter(SafetyPhase phase, SafetyFault fault, std::int64_t now_ns) {
   record_ = {phase, fault, now_ns};
   record_changed_ = true;
   sent_newton_.setZero();
+  // What the hand put in before doesn't count for what follows.
+  credit_joule_ = 0;
 }
 
 }  // namespace prismesh::drivers::haptics

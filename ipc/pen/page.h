@@ -1,14 +1,16 @@
-// The pen's state page: pose, force, phase and the loop's timing, in shared memory that clients read without a request. Each process that
-// drives the pen makes a new page.
+// The pen's state page: pose, force, phase, the loop's timing and its last ticks, in shared memory that clients read without a request.
+// Each process that drives the pen makes a new page.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <cstring>
 #include <optional>
 #include <string_view>
 #include <utility>
 
 #include "base/error.h"
+#include "drivers/haptics/pen_record.h"
 #include "drivers/haptics/safety.h"
 #include "ipc/wire/sealed_page.h"
 #include "ipc/wire/seqlock.h"
@@ -68,14 +70,48 @@ struct PenHealth {
   bool memory_locked = false;
 };
 
+/// The last ticks of the loop, some four seconds: what happened before a fault can still be read after it. Written at each tick.
+class PenTickRing {
+ public:
+  static constexpr std::uint64_t kTicks = 4096;
+
+  void write(const drivers::haptics::PenTick& tick) {
+    std::array<std::uint64_t, kWords> words{};
+    std::memcpy(words.data(), &tick, sizeof tick);
+    const std::uint64_t count = count_.load();
+    store_words(words_[count % kTicks].data(), words.data(), kWords);
+    count_.store(count + 1);
+  }
+  /// Ticks that were written since the page was made.
+  std::uint64_t count() const { return count_.load(); }
+  /// Copies tick `number`, from 0. Empty: it was not written yet, or others have taken its place.
+  std::optional<drivers::haptics::PenTick> read(std::uint64_t number) const {
+    const std::uint64_t before = count_.load();
+    if (number >= before || before >= number + kTicks) return std::nullopt;
+    std::array<std::uint64_t, kWords> words;
+    load_words(words.data(), words_[number % kTicks].data(), kWords);
+    if (count_.load() >= number + kTicks) return std::nullopt;
+    drivers::haptics::PenTick tick;
+    std::memcpy(static_cast<void*>(&tick), words.data(), sizeof tick);
+    return tick;
+  }
+
+ private:
+  static constexpr std::size_t kWords = (sizeof(drivers::haptics::PenTick) + 7) / 8;
+  alignas(64) TurnCount count_;
+  std::array<std::array<std::uint64_t, kWords>, kTicks> words_{};
+};
+
 struct PenPageLayout {
   static constexpr const char* kName = "prismesh-pen";
   static constexpr std::uint64_t kMagic = 0x3145'4741'504E'4550;  // "PENPAGE1"
-  static constexpr std::uint64_t kVersion = 1;
+  static constexpr std::uint64_t kVersion = 2;
   std::uint64_t magic = 0;
   std::uint64_t version = 0;
   SeqlockSlot<PenState> state;
   SeqlockSlot<PenHealth> health;
+  SeqlockSlot<drivers::haptics::PenRecordLimits> limits;  ///< of the loop
+  PenTickRing ticks;
 };
 
 class PenPage {
@@ -86,6 +122,8 @@ class PenPage {
   /// One thread writes each slot.
   void set_state(const PenState& state) { page_->state.write(state); }
   void set_health(const PenHealth& health) { page_->health.write(health); }
+  void set_limits(const drivers::haptics::PenRecordLimits& limits) { page_->limits.write(limits); }
+  void add_tick(const drivers::haptics::PenTick& tick) { page_->ticks.write(tick); }
   PenState state() { return page_->state.read().value_or(PenState{}); }
   PenHealth health() { return page_->health.read().value_or(PenHealth{}); }
   const Descriptor& descriptor() const { return page_.descriptor(); }
@@ -102,6 +140,9 @@ class PenPageReader {
   }
   std::optional<PenState> state() const { return page_->state.read(); }
   std::optional<PenHealth> health() const { return page_->health.read(); }
+  /// Nothing: no loop has begun yet.
+  std::optional<drivers::haptics::PenRecordLimits> limits() const { return page_->limits.read(); }
+  const PenTickRing& ticks() const { return page_->ticks; }
 
  private:
   explicit PenPageReader(SealedPageReader<PenPageLayout> page) : page_(std::move(page)) {}

@@ -10,7 +10,7 @@
 #include "base/log.h"
 #include "daemon/common/service.h"
 #include "daemon/deviced/pen/pen_station.h"
-#include "daemon/deviced/pen/pen_words.h"
+#include "drivers/haptics/safety_words.h"
 #include "ipc/pen/client.h"
 #include "ipc/pen/messages_json.h"
 #include "ipc/pen/roles.h"

@@ -1,5 +1,8 @@
 #include "daemon/deviced/pen/pen_loop.h"
 
+#include <algorithm>
+#include <utility>
+
 namespace prismesh::deviced::pen {
 
 namespace {
@@ -29,7 +32,10 @@ PenStage stage_of(PenPhase device, SafetyPhase safety) {
 PenLoop::PenLoop(const drivers::haptics::HapticLimits& limits, drivers::haptic_pen::framed::FramedPen& pen, FieldReader& fields,
                  GuardPage& guard, ipc::PenPage& page, const drivers::haptics::SafetyRecord& stored, const drivers::haptics::Feel& feel,
                  std::uint64_t arms_answered)
-    : pen_(pen), fields_(fields), guard_(guard), page_(page), loop_(limits, pen.limits(), stored), feel_(feel) {
+    : pen_(pen), fields_(fields), guard_(guard), page_(page), loop_(limits, pen.limits(), stored), feel_(feel), stored_(stored) {
+  drivers::haptics::PenRecordLimits used{loop_.max_newton(), {}};
+  Eigen::Map<Eigen::Vector3d>(used.max_axis_newton) = pen.limits().max_axis_newton;
+  page_.set_limits(used);
   record_.write(stored);
   state_.arms_answered = arms_answered;
 }
@@ -55,6 +61,7 @@ void PenLoop::tick(std::int64_t now_ns) {
   pen_.send(now_ns, answer.command);
   record_.write(answer.safety.record);
   publish(now_ns, tick, answer);
+  keep(tick, answer);
   guard_.beats.fetch_add(1);
 }
 
@@ -109,6 +116,36 @@ void PenLoop::publish(std::int64_t now_ns, const HapticTick& tick, const HapticA
     state_.arm_refused = answer.safety.rearm_refused;
   }
   page_.set_state(state_);
+}
+
+/// After `publish`, which has the newest pose.
+void PenLoop::keep(const HapticTick& tick, const HapticAnswer& answer) {
+  const auto vector = [](double(&to)[3], const Eigen::Vector3d& from) { Eigen::Map<Eigen::Vector3d>{to} = from; };
+  const auto flag = [](bool is) { return static_cast<std::uint8_t>(is); };
+  drivers::haptics::PenTick kept{};
+  kept.now_ns = tick.now_ns;
+  std::copy(state_.position_mm.begin(), state_.position_mm.end(), kept.position_mm);
+  kept.measured_ns = state_.measured_ns;
+  for (std::size_t kind = 0; kind < answer.parts.size(); ++kind) {
+    vector(kept.parts[kind].newton, answer.parts[kind].newton);
+    kept.parts[kind].from_ns = answer.parts[kind].from_ns;
+  }
+  kept.lost_replies = tick.pen.lost_replies;
+  kept.buttons = tick.pen.buttons;
+  kept.element = answer.contact.element;
+  kept.ready = flag(tick.pen.phase == PenPhase::ready);
+  kept.io_error = flag(drivers::haptics::is_line_fault(tick.pen));
+  kept.rearm = flag(tick.rearm);
+  kept.begins = flag(std::exchange(begins_, false));
+  kept.stored_phase = static_cast<std::uint8_t>(stored_.phase);
+  kept.stored_fault = static_cast<std::uint8_t>(stored_.fault);
+  kept.phase = static_cast<std::uint8_t>(answer.safety.record.phase);
+  kept.fault = static_cast<std::uint8_t>(answer.safety.record.fault);
+  kept.damping_only = flag(answer.safety.damping_only);
+  kept.tank_limited = flag(answer.safety.tank_limited);
+  kept.rearm_refused = flag(answer.safety.rearm_refused);
+  vector(kept.newton, answer.command.newton);
+  page_.add_tick(kept);
 }
 
 }  // namespace prismesh::deviced::pen

@@ -43,6 +43,7 @@ class PenLoop {
  private:
   void take_commands(drivers::haptics::HapticTick& tick);
   void publish(std::int64_t now_ns, const drivers::haptics::HapticTick& tick, const drivers::haptics::HapticAnswer& answer);
+  void keep(const drivers::haptics::HapticTick& tick, const drivers::haptics::HapticAnswer& answer);
 
   drivers::haptic_pen::framed::FramedPen& pen_;
   FieldReader& fields_;
@@ -54,6 +55,8 @@ class PenLoop {
   Ring<PenCommandOfMain, 64> commands_;
   ipc::SeqlockSlot<drivers::haptics::SafetyRecord> record_;
   bool arming_ = false;
+  drivers::haptics::SafetyRecord stored_;
+  bool begins_ = true;  ///< no tick yet
 };
 
 }  // namespace prismesh::deviced::pen

@@ -4,7 +4,7 @@
 #include <system_error>
 
 #include "base/file.h"
-#include "daemon/deviced/pen/pen_words.h"
+#include "drivers/haptics/safety_words.h"
 
 namespace prismesh::deviced::pen {
 

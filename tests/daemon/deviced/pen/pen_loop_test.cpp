@@ -7,8 +7,9 @@
 #include <gtest/gtest.h>
 
 #include "daemon/deviced/pen/pen_thread.h"
-#include "daemon/deviced/pen/pen_words.h"
 #include "daemon/deviced/pen/record_store.h"
+#include "drivers/haptics/replay.h"
+#include "drivers/haptics/safety_words.h"
 #include "tests/daemon/deviced/pen/pen_loop_rig.h"
 
 namespace prismesh::deviced::pen {
@@ -92,6 +93,35 @@ TEST(PenLoop, beats_at_each_tick) {
   PenLoopRig rig;
   rig.run_ms(10);
   EXPECT_EQ(rig.guard.beats, 10U);
+}
+
+TEST(PenLoop, keeps_its_last_ticks_so_that_they_can_be_replayed) {
+  PenLoopRig rig;
+  rig.run_ms(700);
+  rig.arm();
+  EXPECT_EQ(rig.state().stage, ipc::PenStage::armed);
+  rig.run_ms(900);
+  rig.tick(20'000'000);
+  EXPECT_EQ(rig.state().fault, drivers::haptics::SafetyFault::late_tick);
+  rig.run_ms(100);
+  const auto page = ipc::PenPageReader::map(rig.page.descriptor()).value();
+  drivers::haptics::PenRecord record;
+  ASSERT_TRUE(page.limits());
+  record.limits = *page.limits();
+  for (std::uint64_t n = 0; n < page.ticks().count(); ++n) record.ticks.push_back(page.ticks().read(n).value());
+  ASSERT_GT(record.ticks.size(), 1900u);
+  drivers::haptics::ReplayReport report = drivers::haptics::replay(record);
+  EXPECT_EQ(report.differing, 0u);
+  EXPECT_EQ(report.forces_compared, record.ticks.size());
+  EXPECT_GT(report.max_newton, 0);
+  ASSERT_EQ(report.changes.size(), 3u);
+  EXPECT_EQ(report.changes[2].fault, drivers::haptics::SafetyFault::late_tick);
+
+  // Once the ring is full, the oldest go.
+  rig.run_ms(static_cast<int>(ipc::PenTickRing::kTicks));
+  EXPECT_FALSE(page.ticks().read(0));
+  EXPECT_FALSE(page.ticks().read(page.ticks().count()));
+  EXPECT_TRUE(page.ticks().read(page.ticks().count() - ipc::PenTickRing::kTicks + 1));
 }
 
 TEST(PenTicks, are_skipped_after_a_stall) {

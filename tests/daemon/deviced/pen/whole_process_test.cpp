@@ -95,6 +95,15 @@ class PenProcess : public ::testing::Test {
     })) << daemon_->standard_error();
   }
 
+  /// Runs the command line; its exit status.
+  static int prismesh(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), (test::programs_folder() / "prismesh").string());
+    Process program(arguments, std::map<std::string, std::string>{});
+    const int status = program.wait_for_exit();
+    EXPECT_EQ(program.standard_error(), "");
+    return status;
+  }
+
   /// Waits for the guard's first zero after frame `from`; its index.
   std::size_t first_of_guard(std::size_t from) const {
     std::size_t found = 0;
@@ -238,6 +247,10 @@ TEST_F(PenProcess, unplugged_while_armed_comes_back_latched) {
   report("unplugged: until the loop knows", std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - began).count());
   EXPECT_TRUE(state().fault == SafetyFault::io_error || state().fault == SafetyFault::no_pose);
   EXPECT_EQ(state().newton, (std::array<double, 3>{}));
+  // What led to it can still be recorded, and the safety runs on it as it did.
+  const std::string record = (folder_ / "fault.record").string();
+  EXPECT_EQ(prismesh({"devices", "--runtime-dir", (folder_ / "run").string(), "--record", record, "--seconds", "0"}), 0);
+  EXPECT_EQ(prismesh({"devices", "--replay", record}), 0);
   const std::size_t before = line_->seen().size();
   line_->plug_in();
   ASSERT_TRUE(wait_for([&] { return line_->seen().size() > before + 50; })) << daemon_->standard_error();
