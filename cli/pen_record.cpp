@@ -66,7 +66,7 @@ std::string replay_text(const drivers::haptics::PenRecord& record, const ReplayR
       static_cast<double>(report.worst_gap_ns) * 1e-6,
       report.lost_replies == 1 ? "1 reply" : fmt::format("{} replies", report.lost_replies), counted(report.limited_ticks, "force"));
   for (const ReplayReport::Change& change : report.changes) {
-    const double s = static_cast<double>(record.ticks[change.tick].now_ns - record.ticks.front().now_ns) * 1e-9;
+    const double s = (static_cast<double>(record.ticks[change.tick].now_ns) - static_cast<double>(record.ticks.front().now_ns)) * 1e-9;
     text += fmt::format("  {:9.3f} s  tick {:<7} {}", s, change.tick, drivers::haptics::phase_name(change.phase));
     if (change.fault != drivers::haptics::SafetyFault::none) text += fmt::format(": {}", drivers::haptics::fault_words(change.fault));
     text += '\n';

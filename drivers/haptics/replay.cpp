@@ -18,6 +18,12 @@ SafetyPhase phase_of(std::uint8_t number) {
 }
 SafetyFault fault_of(std::uint8_t number) { return static_cast<SafetyFault>(number); }
 
+/// From one time to another; a record may hold any numbers.
+std::int64_t passed_ns(std::int64_t from, std::int64_t to) {
+  std::int64_t passed = 0;
+  return __builtin_sub_overflow(to, from, &passed) ? 0 : passed;
+}
+
 /// The same bits, so that a force that isn't a number equals itself.
 bool same_bits(const Eigen::Vector3d& a, const double (&b)[3]) { return std::memcmp(a.data(), b, sizeof b) == 0; }
 
@@ -31,7 +37,8 @@ class Replay {
 
   ReplayReport run() {
     for (std::size_t t = 0; t < record_.ticks.size(); ++t) take(t);
-    if (!record_.ticks.empty()) report_.seconds = static_cast<double>(record_.ticks.back().now_ns - record_.ticks.front().now_ns) * 1e-9;
+    if (!record_.ticks.empty())
+      report_.seconds = static_cast<double>(passed_ns(record_.ticks.front().now_ns, record_.ticks.back().now_ns)) * 1e-9;
     return report_;
   }
 
@@ -65,7 +72,8 @@ class Replay {
       if (armed && !was_armed && rest_ns_ >= kRestNs) exact_ = true;
       compare(t, output);
     }
-    rest_ns_ = armed || t == 0 ? 0 : rest_ns_ + std::max<std::int64_t>(0, tick.now_ns - record_.ticks[t - 1].now_ns);
+    rest_ns_ =
+        armed || t == 0 ? 0 : std::min(rest_ns_, kRestNs) + std::max<std::int64_t>(0, passed_ns(record_.ticks[t - 1].now_ns, tick.now_ns));
   }
 
   void note(std::size_t t) {
@@ -73,7 +81,7 @@ class Replay {
     const PenTick* before = t > 0 ? &record_.ticks[t - 1] : nullptr;
     if (before == nullptr || before->phase != tick.phase || before->fault != tick.fault)
       report_.changes.push_back({t, phase_of(tick.phase), fault_of(tick.fault)});
-    if (before != nullptr) report_.worst_gap_ns = std::max(report_.worst_gap_ns, tick.now_ns - before->now_ns);
+    if (before != nullptr) report_.worst_gap_ns = std::max(report_.worst_gap_ns, passed_ns(before->now_ns, tick.now_ns));
     const double newton = vector_of(tick.newton).norm();
     if (!(newton <= report_.max_newton)) report_.max_newton = newton;
     report_.lost_replies += tick.lost_replies;

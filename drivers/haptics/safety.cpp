@@ -11,6 +11,11 @@ double seconds_of(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 /// Bounds times from outside, so that differences of two never overflow.
 bool plausible_time(std::int64_t ns) { return ns >= 0 && ns < std::int64_t{1} << 62; }
 
+/// Below 0: the clock went back, or one of the times can't be.
+std::int64_t passed(std::int64_t from_ns, std::int64_t to_ns) {
+  return plausible_time(from_ns) && plausible_time(to_ns) ? to_ns - from_ns : -1;
+}
+
 /// Numbers beyond this are as wrong as infinity, and products of two would be infinite.
 constexpr double kMaxNumber = 1e6;
 
@@ -44,7 +49,7 @@ Safety::Safety(const HapticLimits& limits, const Eigen::Vector3d& max_axis_newto
 
 SafetyOutput Safety::step(const SafetyInput& input) {
   SafetyOutput output;
-  const std::int64_t passed_ns = started_ ? input.now_ns - last_ns_ : limits_.period_ns;
+  const std::int64_t passed_ns = started_ ? passed(last_ns_, input.now_ns) : limits_.period_ns;
   lapsed_ = passed_ns > limits_.period_ns + limits_.late_ns;
   const SafetyFault fault = find_fault(input, passed_ns);
   allowance_joule_ =
