@@ -83,9 +83,9 @@ const std::vector<Module>& modules() {
       {"kiosk/tools/view", {"kiosk/toolkit"}},
       {"kiosk/calibration", {"kiosk/display", "kiosk/render"}},
       {"kiosk",
-       {"kiosk/tools/files", "kiosk/tools/comparison", "kiosk/tools/selection", "kiosk/tools/shaping", "kiosk/tools/pen", "kiosk/tools/quality",
-        "kiosk/tools/mesh_operations", "kiosk/tools/parts", "kiosk/tools/view", "kiosk/calibration", "kiosk/display/kms",
-        "kiosk/display/x11", "drivers/settings"}},
+       {"kiosk/tools/files", "kiosk/tools/comparison", "kiosk/tools/selection", "kiosk/tools/shaping", "kiosk/tools/pen",
+        "kiosk/tools/quality", "kiosk/tools/mesh_operations", "kiosk/tools/parts", "kiosk/tools/view", "kiosk/calibration",
+        "kiosk/display/kms", "kiosk/display/x11", "drivers/settings"}},
 
       {"cli", {"ipc/device", "ipc/model", "ipc/pen", "drivers/settings", "mesh/contact"}},
   };

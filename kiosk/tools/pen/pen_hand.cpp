@@ -56,7 +56,7 @@ void PenHand::hold(const Vec3& axis) {
 }
 
 /// What is held stays where it is; from now on it goes with the pen as it is now.
-void PenHand::begin_anew(Held& held, const PenPose& pose) const {
+void PenHand::begin_anew(HeldByPen& held, const PenPose& pose) const {
   held.by += held.moved;
   held.degrees += held.turned;
   held.moved.setZero();
@@ -65,7 +65,7 @@ void PenHand::begin_anew(Held& held, const PenPose& pose) const {
   held.orientation = pose.orientation;
 }
 
-void PenHand::follow(Held& held, const PenPose& pose) {
+void PenHand::follow(HeldByPen& held, const PenPose& pose) {
   const Vec3 way_mm = pose.position_mm - held.position_mm;
   held.moved = place_.turn.transpose() * way_mm / place_.scale;
   if (held.orientation && pose.orientation) {

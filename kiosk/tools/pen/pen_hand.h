@@ -9,6 +9,20 @@
 
 namespace prismesh::kiosk::tools::pen {
 
+/// What the pen holds, and how far it has brought it.
+struct HeldByPen {
+  Vec3 axis = Vec3::UnitZ();
+  // Where it was when view or clutch moved last, and what the pen did then.
+  Vec3 by = Vec3::Zero();
+  double degrees = 0;
+  Vec3 position_mm = Vec3::Zero();
+  std::optional<Eigen::Quaterniond> orientation{};
+  // Since then.
+  Vec3 moved = Vec3::Zero();  ///< deck coordinates
+  double turned = 0;
+  bool beyond_slack = false;
+};
+
 class PenHand {
  public:
   /// A smaller motion is the hand's trembling: pressing and releasing the button without one pulls nothing.
@@ -43,25 +57,13 @@ class PenHand {
   void forget_clutch() { clutch_mm_.setZero(); }
 
  private:
-  struct Held {
-    Vec3 axis = Vec3::UnitZ();
-    // Where it was when view or clutch moved last, and what the pen did then.
-    Vec3 by = Vec3::Zero();
-    double degrees = 0;
-    Vec3 position_mm = Vec3::Zero();
-    std::optional<Eigen::Quaterniond> orientation{};
-    // Since then.
-    Vec3 moved = Vec3::Zero();  ///< deck coordinates
-    double turned = 0;
-    bool beyond_slack = false;
-  };
-  void begin_anew(Held& held, const PenPose& pose) const;
-  void follow(Held& held, const PenPose& pose);
+  void begin_anew(HeldByPen& held, const PenPose& pose) const;
+  void follow(HeldByPen& held, const PenPose& pose);
 
   Vec3 clutch_mm_ = Vec3::Zero();
   Placement place_;
   std::optional<PenPose> before_;  ///< the last usable one; none: the pen was away
-  std::optional<Held> held_;
+  std::optional<HeldByPen> held_;
   mesh::document::Displacement pulled_;
 };
 
