@@ -23,7 +23,8 @@ using toolkit::TakesNumbers;
 using toolkit::Tool;
 
 Editor::Editor(const stereo::Profile& profile, const toolkit::ToolOptions& options, const EditorServices& services)
-    : notices_(services.trace), context_{services.link, services.renderer, services.clock, services.trace, notices_, tools_, options} {
+    : notices_(services.trace), context_{services.link, services.pen, services.renderer, services.clock, services.trace, notices_,
+                                         tools_,        options} {
   context_.view.profile = profile;
   context_.view.view.rotation = *stereo::named_rotation("iso");
   for (std::unique_ptr<Tool>& tool : make_tools(context_)) tools_.add(std::move(tool));
@@ -57,6 +58,7 @@ void Editor::set_panel(const render::PanelPlace& panel) {
 
 Result<void> Editor::follow() {
   link::ModelLink& link = context_.link;
+  tools_.watch(context_.clock.now_ns());
   if (!std::exchange(context_.follow_soon, false) && link.changes() == link_changes_) return {};
   link_changes_ = link.changes();
   ++context_.changes;

@@ -22,6 +22,7 @@ namespace prismesh::kiosk {
 /// The services that the editor works with.
 struct EditorServices {
   link::ModelLink& link;
+  link::PenLink& pen;
   render::Renderer& renderer;
   Clock& clock;
   notices::Trace trace;

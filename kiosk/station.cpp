@@ -32,10 +32,11 @@ Station::Station(const StationOptions& options, std::unique_ptr<render::Renderer
     : trace(options.trace ? stdout : nullptr),
       mouse(options.mouse),
       link(ipc::model_socket_path(options.runtime_dir), options.deck, clock, trace),
+      pen(ipc::pen_socket_path(options.runtime_dir), link.connection, clock, trace),
       devices(ipc::device_socket_path(options.runtime_dir), trace),
       eyes({}, devices, clock, trace),
       renderer(std::move(made)),
-      editor(options.profile, {expressions_file(), options.follows_others}, {link, *renderer, clock, trace}),
+      editor(options.profile, {expressions_file(), options.follows_others}, {link, pen, *renderer, clock, trace}),
       screen(std::move(gui), options.mouse.in_words(), editor),
       fixed_eyes_(options.fixed_eyes_mm.has_value()),
       resting_mm_(options.fixed_eyes_mm.value_or(kRestingEyesMm)),
@@ -54,6 +55,7 @@ Result<std::unique_ptr<Station>> Station::create(const StationOptions& options) 
 
 Result<void> Station::turn() {
   link.turn();
+  pen.turn();
   devices.turn();
   if (Result<void> followed = editor.follow(); !followed) return followed;
   follow_profile();

@@ -12,6 +12,7 @@
 #include "kiosk/eye_watch.h"
 #include "kiosk/input/mouse_layout.h"
 #include "kiosk/link/model_link.h"
+#include "kiosk/link/pen_link.h"
 #include "kiosk/notices/trace.h"
 #include "kiosk/screen.h"
 
@@ -37,6 +38,7 @@ struct Station {
   notices::Trace trace;
   input::MouseLayout mouse;
   link::ModelLink link;
+  link::PenLink pen;
   DeviceLink devices;
   EyeWatch eyes;
   std::unique_ptr<render::Renderer> renderer;

@@ -5,6 +5,7 @@
 #include "kiosk/tools/files/files_tool.h"
 #include "kiosk/tools/mesh_operations/mesh_operations_tool.h"
 #include "kiosk/tools/parts/parts_tool.h"
+#include "kiosk/tools/pen/pen_tool.h"
 #include "kiosk/tools/quality/quality_tool.h"
 #include "kiosk/tools/selection/selection_tool.h"
 #include "kiosk/tools/shaping/shaping_tool.h"
@@ -36,6 +37,7 @@ const std::vector<ListedTool>& listed_tools() {
       {tools::mesh_operations::keys(), make<tools::mesh_operations::MeshOperationsTool>},
       {tools::parts::keys(), make<tools::parts::PartsTool>},
       {tools::view::keys(), make<tools::view::ViewTool>},
+      {tools::pen::keys(), make<tools::pen::PenTool>},
       {kWindowKeys},
   };
   return kTools;

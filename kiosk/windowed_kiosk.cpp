@@ -22,7 +22,8 @@ constexpr std::int64_t kCaretBlinkNs = 300'000'000;  ///< the caret of a text fi
 constexpr std::int64_t kWheelRestNs = 250'000'000;   ///< the wheel counts as still this long after its last step
 constexpr std::int64_t kForEverNs = -1;
 constexpr std::size_t kManyShells = 200'000;            ///< a picture of more at rest may be too slow while the hand moves something
-constexpr std::int64_t kDaemonTriesNs = 1'000'000'000;  ///< between two attempts to reach a missing device daemon
+constexpr std::int64_t kDaemonTriesNs = 1'000'000'000;  ///< between two attempts to reach a missing device daemon, or the pen's process
+constexpr std::int64_t kPenLookNs = 8'000'000;          ///< between two looks at a pen, which moves without a message
 
 std::int64_t shorter(std::int64_t a, std::int64_t b) { return a < 0 ? b : b < 0 ? a : std::min(a, b); }
 
@@ -211,7 +212,8 @@ std::int64_t WindowedKiosk::patience_ns() const {
   const std::int64_t now = station_.clock.now_ns();
   const int link_ms = station_.link.patience_ms();
   std::int64_t patience = link_ms < 0 ? kForEverNs : link_ms * std::int64_t{1'000'000};
-  if (!station_.devices.connected()) patience = shorter(patience, kDaemonTriesNs);
+  if (!station_.devices.connected() || !station_.pen.is_connected()) patience = shorter(patience, kDaemonTriesNs);
+  if (station_.pen.has_pen()) patience = shorter(patience, kPenLookNs);
   if (stale() || station_.eyes.watches()) patience = shorter(patience, std::max<std::int64_t>(0, station_.eyes.next_look_ns() - now));
   if (station_.screen.gui().wants_keys()) patience = shorter(patience, kCaretBlinkNs);
   if (const auto report = watch_.next_ns()) patience = shorter(patience, std::max<std::int64_t>(0, *report - now));
@@ -220,8 +222,10 @@ std::int64_t WindowedKiosk::patience_ns() const {
 }
 
 void WindowedKiosk::wait() {
-  std::array<pollfd, 3> watched{
-      {{window_.descriptor(), POLLIN, 0}, {station_.link.connection.descriptor(), POLLIN, 0}, {station_.devices.descriptor(), POLLIN, 0}}};
+  std::array<pollfd, 4> watched{{{window_.descriptor(), POLLIN, 0},
+                                 {station_.link.connection.descriptor(), POLLIN, 0},
+                                 {station_.devices.descriptor(), POLLIN, 0},
+                                 {station_.pen.descriptor(), POLLIN, 0}}};
   const std::int64_t patience = patience_ns();
   const bool caret = station_.screen.gui().wants_keys();
   const timespec most{patience / 1'000'000'000, patience % 1'000'000'000};

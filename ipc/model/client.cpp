@@ -42,6 +42,7 @@ struct Client::Impl final : Connection<ModelProtocol> {
   std::map<std::uint64_t, std::uint64_t> drag_requests;   ///< drag -> request, of drags whose preview wasn't taken
   std::map<std::uint64_t, std::uint64_t> lease_requests;  ///< lease -> request, of snapshots that weren't taken
   std::map<std::uint64_t, std::uint64_t> field_requests;  ///< field -> request, of fields that weren't taken
+  std::optional<std::uint64_t> pen_request;               ///< whose page with fields wasn't taken
   std::map<std::uint64_t, std::shared_ptr<const Mapping>> segments;
   /// Segments of the previous snapshot, kept because a second request under way may rely on them.
   std::map<std::uint64_t, std::shared_ptr<const Mapping>> earlier_segments;
@@ -62,6 +63,9 @@ struct Client::Impl final : Connection<ModelProtocol> {
     if (const auto* begun = std::get_if<DragBegun>(&answer)) drag_requests[begun->drag] = to;
     if (const auto* made = std::get_if<FieldMade>(&answer)) field_requests[made->field] = to;
     if (const auto* snapshot = std::get_if<Snapshot>(&answer)) lease_requests[snapshot->lease] = to;
+    if (!std::holds_alternative<PenFollowed>(answer)) return;
+    if (pen_request) take_descriptors_of(*pen_request);  // nobody wants the older page any more
+    pen_request = to;
   }
 
   Result<std::vector<Descriptor>> take_descriptors_for(std::map<std::uint64_t, std::uint64_t>& requests, std::uint64_t key,
@@ -176,17 +180,26 @@ Result<PreviewReader> Client::take_preview(const DragBegun& begun) {
   return PreviewReader::map(descriptors->front());
 }
 
-Result<Descriptor> Client::follow_pen(const FollowPen& request, const Descriptor& pen, std::chrono::milliseconds patience) {
+Result<std::uint64_t> Client::send_follow_pen(const FollowPen& request, const Descriptor& pen) {
   Result<Descriptor> theirs = pen.duplicate();
   if (!theirs) return fail(std::move(theirs.error()));
   std::vector<Descriptor> descriptors;
   descriptors.push_back(std::move(*theirs));
-  const Result<std::uint64_t> number = impl_->send(request, std::move(descriptors));
+  return impl_->send(request, std::move(descriptors));
+}
+
+Result<Descriptor> Client::take_pen_field() {
+  const std::optional<std::uint64_t> request = std::exchange(impl_->pen_request, std::nullopt);
+  std::vector<Descriptor> fields = request ? impl_->take_descriptors_of(*request) : std::vector<Descriptor>();
+  if (fields.size() != 1) return fail(impl_->path().string(), "no page for the pen's field came, or it was taken before");
+  return std::move(fields.front());
+}
+
+Result<Descriptor> Client::follow_pen(const FollowPen& request, const Descriptor& pen, std::chrono::milliseconds patience) {
+  const Result<std::uint64_t> number = send_follow_pen(request, pen);
   if (!number) return fail(number.error());
   if (const Result<Answer> answer = impl_->wait(*number, patience); !answer) return fail(answer.error());
-  std::vector<Descriptor> fields = impl_->take_descriptors_of(*number);
-  if (fields.size() != 1) return fail(impl_->path().string(), "no page for the pen's field came");
-  return std::move(fields.front());
+  return take_pen_field();
 }
 
 const Welcome& Client::welcome() const { return impl_->welcome; }

@@ -59,6 +59,11 @@ class Client {
   /// The preview that came with a DragBegun answer.
   Result<PreviewReader> take_preview(const DragBegun& begun);
 
+  /// Hands the state page of the pen's process over without waiting for the answer; returns the request's number. Wait for its answer
+  /// before the next one: the daemon takes one at a time. Fails when the daemon is gone.
+  Result<std::uint64_t> send_follow_pen(const FollowPen& request, const Descriptor& pen);
+  /// The page with the fields that came with the newest PenFollowed answer.
+  Result<Descriptor> take_pen_field();
   /// Hands the state page of the pen's process over and waits for the page with the fields, which that process attaches. Errors: as of
   /// `call`.
   Result<Descriptor> follow_pen(const FollowPen& request, const Descriptor& pen,

@@ -17,6 +17,20 @@ struct PenProtocol {
   static Result<Said<Answer, Event>> decode(std::string_view line) { return decode_from_pen(line); }
 };
 
+/// The state page with its descriptor, which is handed on.
+struct KeptPage {
+  Descriptor descriptor;
+  PenPageReader reader;
+
+  static Result<KeptPage> map(const Descriptor& descriptor) {
+    Result<PenPageReader> reader = PenPageReader::map(descriptor);
+    if (!reader) return fail(std::move(reader.error()));
+    Result<Descriptor> kept = descriptor.duplicate();
+    if (!kept) return fail(std::move(kept.error()));
+    return KeptPage{std::move(*kept), std::move(*reader)};
+  }
+};
+
 }  // namespace
 
 std::filesystem::path pen_socket_path(const std::optional<std::filesystem::path>& override) {
@@ -28,7 +42,7 @@ struct PenClient::Impl final : Connection<PenProtocol> {
 
   std::uint64_t hello = 0;
   PenWelcome welcome;
-  std::optional<PenPageReader> page;
+  std::optional<KeptPage> page;
 };
 
 PenClient::PenClient(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -65,12 +79,16 @@ Result<void> PenClient::poll(std::chrono::milliseconds patience) {
   return {};
 }
 
-Result<PenAnswer> PenClient::attach_field(const Descriptor& page, std::chrono::milliseconds patience) {
+Result<std::uint64_t> PenClient::send_field(const Descriptor& page) {
   Result<Descriptor> theirs = page.duplicate();
   if (!theirs) return fail(std::move(theirs.error()));
   std::vector<Descriptor> descriptors;
   descriptors.push_back(std::move(*theirs));
-  const Result<std::uint64_t> number = impl_->send(AttachField{}, std::move(descriptors));
+  return impl_->send(AttachField{}, std::move(descriptors));
+}
+
+Result<PenAnswer> PenClient::attach_field(const Descriptor& page, std::chrono::milliseconds patience) {
+  const Result<std::uint64_t> number = send_field(page);
   if (!number) return fail(number.error());
   return impl_->wait(*number, patience);
 }
@@ -78,7 +96,8 @@ Result<PenAnswer> PenClient::attach_field(const Descriptor& page, std::chrono::m
 std::optional<PenEvent> PenClient::next_event() { return impl_->next_event(); }
 std::optional<PenClient::Reply> PenClient::next_reply() { return impl_->next_reply(); }
 const PenWelcome& PenClient::welcome() const { return impl_->welcome; }
-const PenPageReader& PenClient::page() const { return *impl_->page; }
+const PenPageReader& PenClient::page() const { return impl_->page->reader; }
+const Descriptor& PenClient::page_descriptor() const { return impl_->page->descriptor; }
 int PenClient::descriptor() const { return impl_->descriptor(); }
 
 }  // namespace prismesh::ipc

@@ -34,6 +34,8 @@ class PenClient {
 
   /// Sends without waiting; returns the request's number. Fails when the daemon is gone.
   Result<std::uint64_t> send(const PenRequest& request);
+  /// Hands a field's page over without waiting for the answer; returns the request's number. Fails when the daemon is gone.
+  Result<std::uint64_t> send_field(const Descriptor& page);
   /// Hands a field's page over and waits for the answer. Errors: as of `call`.
   Result<PenAnswer> attach_field(const Descriptor& page, std::chrono::milliseconds patience = std::chrono::seconds(10));
   /// Sends and waits for the answer; events that arrive meanwhile are kept for `next_event`. A Failed answer is an Error.
@@ -51,6 +53,8 @@ class PenClient {
   const PenWelcome& welcome() const;
   /// The state page of the daemon's process. It keeps its content when the daemon dies: check its times.
   const PenPageReader& page() const;
+  /// Of that page, for modeld (FollowPen).
+  const Descriptor& page_descriptor() const;
 
   int descriptor() const;  ///< for poll(2)
 

@@ -38,6 +38,13 @@ Result<Descriptor> Descriptor::duplicate() const {
   return copy;
 }
 
+bool Descriptor::same_file(const Descriptor& other) const {
+  struct stat ours {};
+  struct stat theirs {};
+  if (::fstat(fd_, &ours) != 0 || ::fstat(other.fd_, &theirs) != 0) return false;
+  return ours.st_dev == theirs.st_dev && ours.st_ino == theirs.st_ino;
+}
+
 Result<Mapping> Mapping::map(const Descriptor& descriptor, bool writable) {
   struct stat status {};
   if (::fstat(descriptor.get(), &status) != 0) return system_failure("not a descriptor of shared memory");

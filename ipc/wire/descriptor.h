@@ -21,6 +21,8 @@ class Descriptor {
   explicit operator bool() const { return fd_ >= 0; }
   int release() { return std::exchange(fd_, -1); }
   Result<Descriptor> duplicate() const;
+  /// Whether both are of the same file or shared memory; false if one of them is none.
+  bool same_file(const Descriptor& other) const;
 
  private:
   int fd_ = -1;

@@ -74,6 +74,13 @@ void Connection::question(const ipc::Request& request, Then then) {
   if (client_) ask(request, std::move(then));
 }
 
+void Connection::follow_pen(const ipc::FollowPen& request, const ipc::Descriptor& pen, Then then) {
+  if (!client_) return;
+  const Result<std::uint64_t> sent = client_->send_follow_pen(request, pen);
+  if (!sent) return lost(sent.error());
+  waiting_.emplace(*sent, Waiting{std::move(then), false});
+}
+
 void Connection::tell(const ipc::Request& request) {
   if (!client_) return;
   if (const Result<std::uint64_t> sent = client_->send(request); !sent) lost(sent.error());

@@ -55,7 +55,11 @@ class Connection {
   /// Sends what has no answer or whose answer doesn't matter, if there is a connection.
   void tell(const ipc::Request& request);
 
+  /// Asks to follow a pen, if there is a connection; `pen`: its state page. Wait for the answer before the next one. `then` as of `ask`.
+  void follow_pen(const ipc::FollowPen& request, const ipc::Descriptor& pen, Then then);
+
   // Take what came with an answer.
+  Result<ipc::Descriptor> take(const ipc::PenFollowed&) { return client_->take_pen_field(); }
   Result<std::shared_ptr<const ipc::FieldValues>> take(const ipc::FieldMade& made) { return client_->take_field(made); }
   Result<std::shared_ptr<const ipc::SnapshotView>> take(const ipc::Snapshot& snapshot) { return client_->take_snapshot(snapshot); }
   Result<ipc::PreviewReader> take(const ipc::DragBegun& begun) { return client_->take_preview(begun); }

@@ -20,6 +20,8 @@ constexpr double kAxisRadius = 1.4, kAxisBeyond = 28, kAxisEnd = 5;
 constexpr double kCircleRadius = 1.1, kArcRadius = 2.4, kTickRadius = 1.1, kSpokeRadius = 0.8;
 constexpr double kTick = 11, kLongTick = 18;
 constexpr double kFollowedRadius = 2.2;
+constexpr double kPenRadius = 4, kPenCollar = 6, kPenNodeRadius = 5;
+constexpr double kPenConeEnd = 0.17, kPenGripEnd = 0.5;  ///< share of the pen's length
 constexpr float kDiskAlpha = 0.42F, kActiveDiskAlpha = 0.6F, kFaintAlpha = 0.9F;
 constexpr int kSides = 10, kRound = 48;
 constexpr double kFullCircle = 360;
@@ -255,6 +257,33 @@ std::vector<HandlePiece> handle_pieces(const Handle& handle, const HandleSpace& 
     pieces.push_back({{}, handle.use == Use::arrow, false, 1});
     add_arrow(pieces.back().triangles, foot, axis, pixel);
   }
+  return pieces;
+}
+
+std::vector<HandlePiece> pen_pieces(const Pen& pen, const HandleSpace& space) {
+  if (!finite(pen.tip) || !finite(pen.shaft) || !(pen.shaft.norm() > 0)) return {};
+  const ScreenSpace screen(space);
+  std::vector<HandlePiece> pieces;
+  if (!pen.shell.empty()) pieces.push_back(followed_edges_piece(pen.shell, space));
+  if (pen.node && finite(*pen.node)) {
+    const Vec3 node = screen.point(*pen.node);
+    pieces.push_back({{}, true, false, 1});
+    add_ball(pieces.back().triangles, node, kPenNodeRadius * screen.pixel(node));
+  }
+  const Vec3 tip = screen.point(pen.tip);
+  const double pixel = screen.pixel(tip), length = kPenLengthPixels * pixel / space.view.mm_per_unit;
+  const RevolutionAxis about{tip, screen.point(pen.tip + pen.shaft.normalized() * length) - tip};
+  if (!(about.axis.norm() > 0)) return {};
+  const double radius = kPenRadius * pixel, collar = kPenCollar * pixel, slope = -0.3;  // of the cone's normal along the axis
+  HandlePiece cone{{}, pen.busy, false, 1}, shaft{{}, false, false, 1};
+  add_band(cone.triangles, about, {{0, 0.01 * pixel}, {kPenConeEnd, radius}, {std::sqrt(1 - slope * slope), slope}});
+  add_band(shaft.triangles, about, {{kPenConeEnd, radius}, {kPenConeEnd, collar}, {0, -1}});
+  add_band(shaft.triangles, about, {{kPenConeEnd, collar}, {kPenGripEnd, collar}, {1, 0}});
+  add_band(shaft.triangles, about, {{kPenGripEnd, collar}, {kPenGripEnd, radius}, {0, 1}});
+  add_band(shaft.triangles, about, {{kPenGripEnd, radius}, {1, radius}, {1, 0}});
+  add_ball(shaft.triangles, tip + about.axis, radius);
+  pieces.push_back(std::move(cone));
+  pieces.push_back(std::move(shaft));
   return pieces;
 }
 

@@ -32,6 +32,11 @@ struct HandleSpace {
 /// The handle's pieces in drawing order. Empty if position or direction isn't finite, or the direction is zero.
 std::vector<HandlePiece> handle_pieces(const Handle& handle, const HandleSpace& space);
 
+/// The pen's pieces in drawing order: the touched shell, the node, the tip, the shaft. Empty if tip or shaft isn't finite, or the shaft is
+/// zero.
+std::vector<HandlePiece> pen_pieces(const Pen& pen, const HandleSpace& space);
+inline constexpr double kPenLengthPixels = 170;  ///< if it is parallel to the screen
+
 /// Tubes along edges, of the active colour. Edges that aren't finite are left out.
 HandlePiece followed_edges_piece(const std::vector<std::array<Vec3, 2>>& edges, const HandleSpace& space);
 

@@ -48,6 +48,15 @@ struct Handle {
   std::optional<Turn> turn{};  ///< if set, arrow, disk and ring are hidden
   bool operator==(const Handle&) const = default;
 };
+/// The haptic pen as it stands in the model: tip, shaft, and what it touches. White; the tip is green while it touches or holds something.
+struct Pen {
+  Vec3 tip = Vec3::Zero();                   ///< deck coordinates
+  Vec3 shaft = Vec3::UnitZ();                ///< from the tip to the hand, deck coordinates, unit
+  bool busy = false;                         ///< it touches or holds something
+  std::vector<std::array<Vec3, 2>> shell{};  ///< edges of the touched shell, deck coordinates
+  std::optional<Vec3> node{};                ///< that would be taken
+  bool operator==(const Pen&) const = default;
+};
 // Sizes on the screen in pixels, for drawing and picking; the arrow's length is stereo::kHandleLengthPixels.
 inline constexpr double kHandleRingPixels = 12;  ///< the ring's radius
 inline constexpr double kHandleDiskPixels = 36;  ///< the disk's radius, in the plane perpendicular to `direction`
@@ -110,6 +119,7 @@ struct Picture {
   bool selected_nodes = true;
   bool moving = false;  ///< the view turns or something is dragged: drawn without multisampling, which is faster for large models
   std::optional<Handle> handle;
+  std::optional<Pen> pen;
   std::vector<std::array<Vec3, 2>> followed_edges;  ///< free edges that move as far as the handle, deck coordinates: drawn green
   std::optional<PixelRect> rubber_band;
   std::vector<Eigen::Vector2d> lasso;  ///< display pixels; drawn closed

@@ -31,8 +31,8 @@ struct DrawnScene {
     const auto facts = [](const DrawnScene& d) {
       const Picture& p = d.picture;
       return std::tie(p.view, p.profile.optics.pixel_pitch_mm, p.colour, p.element_edges, p.outlines, p.quality_glyphs, p.damaged_only,
-                      p.marked, p.selected_nodes, p.handle, p.followed_edges, p.shadows, p.field, p.two_views, d.images, d.width, d.height,
-                      d.scene_version);
+                      p.marked, p.selected_nodes, p.handle, p.pen, p.followed_edges, p.shadows, p.field, p.two_views, d.images, d.width,
+                      d.height, d.scene_version);
     };
     return facts(*this) == facts(other);
   }
@@ -51,6 +51,7 @@ EyeView eye_view(const Picture& picture, const ComposedImage& image, int width, 
   const Eigen::Vector2d screen = stereo::screen_size_mm(picture.profile, width, height);
   view.eye_mm = image.eye_mm;
   view.range = stereo::depth_range(picture.view, view.eye_mm);
+  if (picture.pen) view.range = stereo::with_depth(view.range, view.eye_mm, stereo::to_screen(picture.view, picture.pen->tip).z());
   view.clip_from_screen = stereo::clip_onto(image.from_picture, stereo::clip_from_screen(view.eye_mm, screen, view.range), width, height);
   view.mm_per_pixel = screen.x() / width;
   view.viewer_mm = std::max(picture.between_eyes_mm.z(), kMinViewerMm);
@@ -241,6 +242,7 @@ void Renderer::Impl::draw_views(const Picture& picture, const EyeView& eye, int 
     half.view = stereo::pan(picture.view, {picture.two_views->shift_mm(right, eye.mm_per_pixel * width), 0});
     if (pane == Pane::other) {
       half.handle.reset();
+      half.pen.reset();
       half.followed_edges.clear();
       half.marked.reset();
       half.shadows = false;

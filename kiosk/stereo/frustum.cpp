@@ -1,13 +1,15 @@
 #include "kiosk/stereo/frustum.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace prismesh::kiosk::stereo {
 
 namespace {
-constexpr double kMinNearMm = 10;  ///< of the near plane from the eye, so that depth keeps its resolution
-constexpr double kMarginMm = 40;   ///< for what extends beyond the model: handles, glyphs
-constexpr double kMinEyeMm = 20;   ///< an eye nearer to the screen, or behind it, is moved to this distance
+constexpr double kMinNearMm = 10;    ///< of the near plane from the eye, so that depth keeps its resolution
+constexpr double kPenReachMm = 120;  ///< of a pen beyond its tip
+constexpr double kMarginMm = 40;     ///< for what extends beyond the model: handles, glyphs
+constexpr double kMinEyeMm = 20;     ///< an eye nearer to the screen, or behind it, is moved to this distance
 }  // namespace
 
 EyePair PictureEyes::eyes() const {
@@ -24,6 +26,13 @@ DepthRange depth_range(const View& view, const Vec3& eye_mm) {
   const double eye = std::max(eye_mm.z(), kMinEyeMm);
   const double near_mm = std::max(kMinNearMm, eye - before - kMarginMm);
   return {near_mm, std::max(eye - behind + kMarginMm, near_mm + kMarginMm)};
+}
+
+DepthRange with_depth(const DepthRange& range, const Vec3& eye_mm, double depth_mm) {
+  if (!std::isfinite(depth_mm)) return range;
+  const double away = std::max(eye_mm.z(), kMinEyeMm) - depth_mm;
+  const double near_mm = std::max(kMinNearMm, std::min(range.near_mm, away - kPenReachMm));
+  return {near_mm, std::max({range.far_mm, away + kPenReachMm, near_mm + kMarginMm})};
 }
 
 Eigen::Matrix4d clip_from_screen(const Vec3& eye_mm, const Eigen::Vector2d& screen_mm, const DepthRange& range) {

@@ -35,6 +35,8 @@ struct DepthRange {
 };
 /// The smallest range that contains the view's bounds and a margin for handles and glyphs.
 DepthRange depth_range(const View& view, const Vec3& eye_mm);
+/// The range extended to what is at this depth in screen space (mm) and about it. A depth that isn't finite changes nothing.
+DepthRange with_depth(const DepthRange& range, const Vec3& eye_mm, double depth_mm);
 
 /// Maps screen millimetres to clip space for an eye (z > 0) in front of a screen of w x h mm. The screen's corners map to the picture's
 /// corners for every eye. Column vectors; clip z in -w..w.

@@ -9,6 +9,7 @@
 #include "kiosk/panels/panel_layout.h"
 #include "kiosk/panels/question.h"
 #include "kiosk/toolkit/pointer.h"
+#include "mesh/document/edit.h"
 
 namespace prismesh::kiosk::toolkit {
 
@@ -50,6 +51,13 @@ class Drags : public Ability {
   virtual void cancel_gesture() = 0;
 };
 
+/// Follows what moves without a message, such as the haptic pen.
+class Watches : public Ability {
+ public:
+  /// Looks at it, at each turn of the kiosk.
+  virtual void watch(std::int64_t now_ns) = 0;
+};
+
 // --- what Esc ends ---
 
 /// In a mode a tool gets gestures before the tools without one.
@@ -80,6 +88,18 @@ class GuardsEdits : public Ability {
   virtual bool allow_edit() = 0;
   /// An edit is about to be sent.
   virtual void edit_begins() = 0;
+};
+
+class SetsShaping : public Ability {
+ public:
+  /// What the hand has set for shaping edits that take a node. `middle`: of what moves, for a mirror without a place of its own.
+  virtual mesh::document::Shaping shaping(std::int64_t grab, const mesh::Vec3& middle) const = 0;
+};
+
+class SetsRegion : public Ability {
+ public:
+  /// The region about a node, as the hand has set what bounds regions.
+  virtual mesh::document::SelectRegion region(std::int64_t node) const = 0;
 };
 
 class Previews : public Ability {

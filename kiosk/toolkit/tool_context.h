@@ -8,6 +8,7 @@
 
 #include "base/clock.h"
 #include "kiosk/link/model_link.h"
+#include "kiosk/link/pen_link.h"
 #include "kiosk/notices/notices.h"
 #include "kiosk/notices/trace.h"
 #include "kiosk/render/renderer.h"
@@ -57,6 +58,7 @@ struct ToolOptions {
 
 struct ToolContext {
   link::ModelLink& link;
+  link::PenLink& pen;
   render::Renderer& renderer;
   Clock& clock;
   notices::Trace trace;

@@ -61,6 +61,20 @@ void ToolSet::leave_previews() {
   for (Previews* tool : with<Previews>()) tool->leave_preview();
 }
 
+void ToolSet::watch(std::int64_t now_ns) {
+  for (Watches* tool : with<Watches>()) tool->watch(now_ns);
+}
+
+mesh::document::Shaping ToolSet::shaping(std::int64_t grab, const mesh::Vec3& middle) const {
+  const auto& tools = with<SetsShaping>();
+  return tools.empty() ? mesh::document::Shaping{} : tools.front()->shaping(grab, middle);
+}
+
+mesh::document::SelectRegion ToolSet::region(std::int64_t node) const {
+  const auto& tools = with<SetsRegion>();
+  return tools.empty() ? mesh::document::SelectRegion{} : tools.front()->region(node);
+}
+
 bool ToolSet::allow_edit() { return std::ranges::all_of(with<GuardsEdits>(), &GuardsEdits::allow_edit); }
 
 void ToolSet::edit_begins() {

@@ -40,6 +40,10 @@ class ToolSet {
   bool pulling() const;
   void leave_previews();
   bool allow_edit();
+  void watch(std::int64_t now_ns);
+  /// Of the tool that sets it.
+  mesh::document::Shaping shaping(std::int64_t grab, const mesh::Vec3& middle) const;
+  mesh::document::SelectRegion region(std::int64_t node) const;
   void edit_begins();
   void view_moved(const Pointer& pointer = {});
   void panel_changed();
@@ -61,8 +65,9 @@ class ToolSet {
 
   All all_;
   std::vector<Moded> moded_;  ///< all of them
-  AbilityLists<TakesNumbers, HasHandle, Drags, HasMode, TakesBack, Clears, GuardsEdits, Previews, MovesView, FollowsView, ColoursModel,
-               HidesGlyphs, TracesPicture, HasStatus, HasList, DrawsOverPicture, HasDialogs, AsksQuestions>
+  AbilityLists<TakesNumbers, HasHandle, Drags, Watches, HasMode, TakesBack, Clears, GuardsEdits, SetsShaping, SetsRegion, Previews,
+               MovesView, FollowsView, ColoursModel, HidesGlyphs, TracesPicture, HasStatus, HasList, DrawsOverPicture, HasDialogs,
+               AsksQuestions>
       abilities_;
 };
 

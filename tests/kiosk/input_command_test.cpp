@@ -71,7 +71,7 @@ TEST(KeysTest, every_command_has_one_row_with_words) {
 TEST(KeysTest, the_commands_of_an_owner_are_numbered_without_gaps) {
   std::map<std::string_view, std::set<int>> numbers;
   for (const KeyBinding& binding : key_bindings()) numbers[binding.command.owner].insert(binding.command.number);
-  EXPECT_EQ(numbers.size(), 9U) << "eight tools and the editor";
+  EXPECT_EQ(numbers.size(), 10U) << "nine tools and the editor";
   for (const auto& [owner, taken] : numbers)
     EXPECT_EQ(*taken.rbegin() + 1, static_cast<int>(taken.size())) << owner << ": a row is missing";
 }
@@ -171,6 +171,7 @@ TEST(KeysTest, rows_keep_the_order_of_help_and_menu) {
                                              "PgDn",
                                              "Ctrl+PgUp",
                                              "Ctrl+PgDn",
+                                             "Ctrl+Shift+P",
                                              "Ctrl+R",
                                              "F11",
                                              "F10",

@@ -297,6 +297,81 @@ TEST(HandleMesh, faces_look_outward) {
   }
 }
 
+/// The box around a piece, screen mm.
+stereo::Box box_of(const HandlePiece& piece) {
+  stereo::Box box;
+  for (const HandleVertex& vertex : piece.triangles) box.add(Eigen::Vector3f(vertex.at.data()).cast<double>());
+  return box;
+}
+
+TEST(PenMesh, the_tip_is_where_the_pen_is_and_the_shaft_goes_to_the_hand) {
+  stereo::View view;
+  view.mm_per_unit = 2;
+  view.bounds = {Vec3::Zero(), 10};
+  Pen pen;
+  pen.tip = {10, -5, 8};
+  pen.shaft = Vec3(1, 1, 1).normalized();
+  const Vec3 tip = stereo::to_screen(view, pen.tip);
+  ASSERT_GT(std::abs(tip.z()), 1) << "it has depth";
+  std::vector<HandlePiece> pieces = pen_pieces(pen, space_of(view));
+  ASSERT_EQ(pieces.size(), 2U);
+  const stereo::Box cone = box_of(pieces[0]), shaft = box_of(pieces[1]);
+  EXPECT_LT((cone.low - tip).norm(), 3) << "its foremost point";
+  EXPECT_LT((Eigen::Vector3f(pieces[0].triangles[0].at.data()).cast<double>() - tip).norm(), 0.1);
+  const double pixel = 0.28 * (650 - tip.z()) / 650, along = kPenLengthPixels * pixel / std::sqrt(3.0);
+  EXPECT_NEAR(shaft.high.x(), tip.x() + along, 6 * pixel);
+  EXPECT_NEAR(shaft.high.y(), tip.y() + along, 6 * pixel);
+  EXPECT_NEAR(shaft.high.z(), tip.z() + along * stereo::depth_scale(view), 6 * pixel) << "in the depth that the model has";
+  EXPECT_FALSE(pieces[0].active);
+  pen.busy = true;
+  pieces = pen_pieces(pen, space_of(view));
+  EXPECT_TRUE(pieces[0].active);
+  EXPECT_FALSE(pieces[1].active);
+}
+
+TEST(PenMesh, what_it_touches_is_marked) {
+  const stereo::View view;
+  Pen pen;
+  pen.tip = {10, -5, 8};
+  pen.shell = {{Vec3(0, 0, 0), Vec3(5, 0, 0)}, {Vec3(5, 0, 0), Vec3(0, 5, 0)}};
+  pen.node = Vec3(5, 0, 0);
+  const std::vector<HandlePiece> pieces = pen_pieces(pen, space_of(view));
+  ASSERT_EQ(pieces.size(), 4U);
+  EXPECT_TRUE(pieces[0].active && pieces[1].active);
+  const stereo::Box node = box_of(pieces[1]);
+  EXPECT_LT((0.5 * (node.low + node.high) - stereo::to_screen(view, *pen.node)).norm(), 0.1);
+}
+
+TEST(PenMesh, faces_look_outward) {
+  Pen pen;
+  pen.tip = {10, -5, 8};
+  pen.shaft = Vec3(1, -2, 3).normalized();
+  pen.node = Vec3(5, 0, 0);
+  for (const HandlePiece& piece : pen_pieces(pen, space_of(stereo::View())))
+    for (std::size_t i = 0; i < piece.triangles.size(); i += 3) {
+      std::array<Eigen::Vector3f, 3> p;
+      Eigen::Vector3f outward = Eigen::Vector3f::Zero();
+      for (std::size_t k = 0; k < 3; ++k) {
+        p[k] = Eigen::Vector3f(piece.triangles[i + k].at.data());
+        outward += Eigen::Vector3f(piece.triangles[i + k].outward.data());
+      }
+      const Eigen::Vector3f normal = (p[1] - p[0]).cross(p[2] - p[0]);
+      if (normal.norm() > 1e-4F) {
+        EXPECT_GT(normal.dot(outward), 0) << "triangle " << i / 3;
+      }
+    }
+}
+
+TEST(PenMesh, a_pen_without_a_position_is_not_drawn) {
+  const stereo::View view;
+  Pen pen;
+  pen.tip.x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(pen_pieces(pen, space_of(view)).empty());
+  pen = {};
+  pen.shaft = Vec3::Zero();
+  EXPECT_TRUE(pen_pieces(pen, space_of(view)).empty());
+}
+
 TEST(HandleMesh, a_handle_without_a_position_is_not_drawn) {
   const stereo::View view;
   const double nan = std::numeric_limits<double>::quiet_NaN();

@@ -163,14 +163,19 @@ void SelectionTool::select_region(const Pixel& at, SelectMode mode) {
   const std::optional<mesh::NodeIndex> node = toolkit::shown_node_at(context_, at);
   if (!node) return;
   if (mode != SelectMode::subtract) context_.selection.last_clicked = node;
-  mesh::document::SelectRegion edit;
-  edit.at = context_.shown.snapshot->node_id(node->value);
-  edit.angle = context_.selection.crease_angle;
-  edit.by = region_by_;
-  edit.across_welds = region_across_welds_;
+  mesh::document::SelectRegion edit = region(context_.shown.snapshot->node_id(node->value));
   edit.mode = mode;
   context_.selection.last_region = edit;
   toolkit::send(context_, edit);
+}
+
+mesh::document::SelectRegion SelectionTool::region(std::int64_t node) const {
+  mesh::document::SelectRegion region;
+  region.at = node;
+  region.angle = context_.selection.crease_angle;
+  region.by = region_by_;
+  region.across_welds = region_across_welds_;
+  return region;
 }
 
 /// The region that was selected last follows the angle.

@@ -21,6 +21,7 @@ class SelectionTool final : public toolkit::Tool,
                             public toolkit::TakesGestures,
                             public toolkit::Drags,
                             public toolkit::Clears,
+                            public toolkit::SetsRegion,
                             public toolkit::HasDialogs {
  public:
   explicit SelectionTool(toolkit::ToolContext& context) : context_(context), expressions_(context.options.expressions) {}
@@ -29,6 +30,7 @@ class SelectionTool final : public toolkit::Tool,
   void command(std::uint8_t number, const toolkit::Pointer& pointer) override;
   bool gesture(const input::Gesture& gesture) override;
   void clear() override;
+  mesh::document::SelectRegion region(std::int64_t node) const override;
   bool dragging() const override { return rubber_band_.has_value() || !lasso_.empty(); }
   void cancel_gesture() override;
   void add_to_picture(render::Picture& picture) const override;

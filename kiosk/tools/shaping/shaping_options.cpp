@@ -37,8 +37,6 @@ std::string_view name_of(mesh::shape::FreeEnds ends) {
 
 mesh::shape::FreeEnds next(mesh::shape::FreeEnds ends) { return static_cast<mesh::shape::FreeEnds>((static_cast<int>(ends) + 2) % 3); }
 
-namespace {
-
 mesh::document::Shaping shaping_of(const ShapingOptions& options, const ShapedHandle& shaped) {
   mesh::document::Shaping shaping;
   shaping.grab = shaped.grab;
@@ -55,8 +53,6 @@ mesh::document::Shaping shaping_of(const ShapingOptions& options, const ShapedHa
   }
   return shaping;
 }
-
-}  // namespace
 
 mesh::document::Edit edit_of(const ShapedHandle& shaped, const ShapingOptions& options, const Pull& displacement) {
   const mesh::document::Shaping shaping = shaping_of(options, shaped);

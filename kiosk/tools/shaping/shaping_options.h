@@ -57,6 +57,9 @@ struct ShapedHandle {
   std::optional<Axis> axis{};              ///< of the turning handle
 };
 
+/// How its edits fall off, and their limits and mirror.
+mesh::document::Shaping shaping_of(const ShapingOptions& options, const ShapedHandle& shaped);
+
 /// The edit that a part of the handle makes at a displacement.
 mesh::document::Edit edit_of(const ShapedHandle& shaped, const ShapingOptions& options, const Pull& displacement);
 

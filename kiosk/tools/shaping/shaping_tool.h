@@ -28,6 +28,7 @@ class ShapingTool final : public toolkit::Tool,
                           public toolkit::Drags,
                           public toolkit::HasMode,
                           public toolkit::TakesBack,
+                          public toolkit::SetsShaping,
                           public toolkit::FollowsView,
                           public toolkit::TracesPicture,
                           public toolkit::HasDialogs {
@@ -47,6 +48,9 @@ class ShapingTool final : public toolkit::Tool,
   bool dragging() const override { return pulling(); }
   void cancel_gesture() override;
   bool pulling() const override { return pull_.has_value(); }
+  mesh::document::Shaping shaping(std::int64_t grab, const Vec3& middle) const override {
+    return shaping_of(options_, {input::Under::move_handle, grab, middle});
+  }
   Result<void> follow() override;
   void model_changed() override;
   void document_changed() override;

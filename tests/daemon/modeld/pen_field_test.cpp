@@ -354,6 +354,35 @@ TEST_F(PenFields, have_the_newest_placement_until_the_pen_is_left) {
   ASSERT_TRUE(pen_.wait_for([](const HapticField& field) { return field.placement == 3; }));
 }
 
+TEST_F(PenFields, are_asked_for_without_waiting) {
+  const auto ask = [&](std::uint64_t placement) {
+    const auto number = client_->send_follow_pen({placement}, pen_.page.descriptor());
+    ASSERT_TRUE(number) << number.error().text();
+    const auto until = std::chrono::steady_clock::now() + kPenPatience;
+    std::optional<ipc::Client::Reply> reply;
+    while (!reply && std::chrono::steady_clock::now() < until) {
+      ASSERT_TRUE(client_->poll(10ms));
+      reply = client_->next_reply();
+    }
+    ASSERT_TRUE(reply);
+    EXPECT_EQ(reply->request, *number);
+    EXPECT_TRUE(std::holds_alternative<ipc::PenFollowed>(reply->answer));
+  };
+  EXPECT_FALSE(client_->take_pen_field()) << "none was asked for";
+  ask(1);
+  const ipc::Descriptor first = client_->take_pen_field().value();
+  EXPECT_FALSE(client_->take_pen_field()) << "it was taken";
+  ask(2);
+  ask(3);
+  const ipc::Descriptor third = client_->take_pen_field().value();
+  EXPECT_TRUE(third.same_file(first)) << "the page stays while a pen is followed";
+  EXPECT_FALSE(client_->take_pen_field()) << "the second one wasn't kept";
+  ASSERT_TRUE(client_->call(ipc::LeavePen{}));
+  ask(4);
+  EXPECT_FALSE(client_->take_pen_field().value().same_file(first));
+  EXPECT_FALSE(first.same_file(ipc::Descriptor()));
+}
+
 TEST_F(PenFields, end_with_the_client) {
   ipc::Client broker = connect();
   pen_.move_to(Vec3::Zero());
