@@ -248,7 +248,7 @@ TEST_F(PenTest, an_armed_pen_marks_the_shell_that_it_touches_and_takes_its_neare
       if (!pen_->running()) return false;
       if (kiosk().last("pen state ") != "pen state armed") {
         kiosk().skip_lines();
-        station_->key("ctrl+p");
+        station_->key("ctrl+shift+p");
         kiosk().wait_until([](const std::string& line) {
           return line.starts_with("pen state ") || line.starts_with("pen refused ") || line.starts_with("pen disconnected");
         });
