@@ -38,6 +38,7 @@ void SimulatedDevice::step(std::int64_t now_ns) {
     pose.position_mm[axis] = quantum_mm_ > 0 ? std::round(mm / quantum_mm_) * quantum_mm_ : mm;
   }
   pose.phase = PenPhase::ready;
+  pose.buttons = static_cast<std::uint8_t>(pen_.buttons());
   pose.answers = answers_;
   const FrameBytes bytes = encode(pose);
   (void)line_.write(bytes);  // a host that reads nothing loses poses
