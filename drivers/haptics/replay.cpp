@@ -90,7 +90,8 @@ class Replay {
 
   SafetyInput input_of(const PenTick& tick) {
     for (std::size_t kind = 0; kind < kForceKinds; ++kind)
-      parts_[kind] = {recorded_vector(tick.parts[kind].newton), tick.parts[kind].from_ns, kind == static_cast<std::size_t>(ForceKind::damping)};
+      parts_[kind] = {recorded_vector(tick.parts[kind].newton), tick.parts[kind].from_ns,
+                      kind == static_cast<std::size_t>(ForceKind::damping)};
     SafetyInput input;
     input.now_ns = tick.now_ns;
     input.position_mm = recorded_vector(tick.position_mm);
