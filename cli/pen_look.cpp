@@ -62,7 +62,10 @@ std::string pen_text(const PenFigures& pen, std::int64_t now_ns) {
     text += fmt::format("  at ({:.1f}, {:.1f}, {:.1f}) mm, measured {:.0f} ms ago; force {:.2f} N{}; {}\n", state.position_mm[0] + 0.0,
                         state.position_mm[1] + 0.0, state.position_mm[2] + 0.0, in_ms(now_ns - state.measured_ns), length(state.newton),
                         state.touching ? ", touches a shell" : "", state.field_number == 0 ? "no field" : "has a field of the shells");
-  if (!pen.info.trouble.empty()) text += "  trouble: " + printable(pen.info.trouble) + "\n";
+  if (!pen.info.trouble.empty()) {
+    text += "  trouble: " + printable(pen.info.trouble);
+    text += state.stage == ipc::PenStage::latched ? " (prismesh devices --arm-pen)\n" : "\n";
+  }
   const ipc::PenHealth& loop = pen.loop;
   if (loop.ticks == 0) return text;
   return text + fmt::format(

@@ -14,8 +14,8 @@ def survive(station):
     station.kill("modeld")
     station.start("modeld", ["session", "state"])
     after = session("state")
-    ours = ("path", "nodes", "shells", "selected", "edits", "quality")
-    lost = [key for key in ours if key in before and before[key] != after.get(key)]
+    ours = ("path", "nodes", "shells", "selected_nodes", "journalled_edits", "counts")
+    lost = [key for key in ours if before[key] != after[key]]
     if lost:
         raise Stop(f"after modeld was killed, the document has another {', '.join(lost)}")
     tell("\nmodeld    killed with an unsaved edit and started again, as systemd does: the deck is open with every edit")

@@ -96,11 +96,11 @@ class Station:
             self.end()
             raise
 
-    def start(self, name, question, *arguments):
-        """Starts a daemon and waits until it answers."""
+    def start(self, name, question, *arguments, of=None):
+        """Starts a daemon and waits until it answers. `of`: its program, if that has another name."""
         log = self.out / f"{name}.log"
         with open(log, "w") as said:
-            process = subprocess.Popen([program(f"prismesh-{name}"), *arguments], stdin=subprocess.DEVNULL, stdout=said, stderr=said)
+            process = subprocess.Popen([program(f"prismesh-{of or name}"), *arguments], stdin=subprocess.DEVNULL, stdout=said, stderr=said)
         self.processes[name] = process
         for _ in range(150):
             if process.poll() is not None:
@@ -112,6 +112,16 @@ class Station:
 
     def start_deviced(self):
         self.start("deviced", ["devices"], "--config", ROOT / "demo" / "simulated.toml")
+
+    def start_pen(self, settings):
+        self.start("pen", ["devices", "--record", os.devnull, "--seconds", "0"], "--only", "pen", "--config", settings, of="deviced")
+
+    def stop(self, name):
+        """Ends a daemon in order."""
+        process = self.processes.pop(name, None)
+        if process is not None:
+            process.terminate()
+            process.wait(10)
 
     def kill(self, name):
         """Ends a daemon like a crash."""

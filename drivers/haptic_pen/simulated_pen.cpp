@@ -44,6 +44,7 @@ PenReading SimulatedPen::read(std::int64_t now_ns) {
     answer_count_ -= arrived;
   }
   reading.lost_replies = std::exchange(lost_, 0);
+  reading.buttons = buttons_;
   return reading;
 }
 
@@ -90,6 +91,7 @@ void SimulatedPen::run_until(std::int64_t now_ns) {
 void SimulatedPen::move(std::int64_t step_ns) {
   const double seconds = static_cast<double>(step_ns) * 1e-9;
   const SimulatedHand hand = hand_(static_cast<double>(now_ns_ - start_ns_) * 1e-9);
+  buttons_ = hand.buttons;
   const Eigen::Vector3d push_newton = applied_.newton + hand.push_newton + hand.stiffness_newton_m * 1e-3 * (hand.goal_mm - position_mm_) -
                                       (hand.damping_newton_s_m + options_.damping_newton_s_m) * 1e-3 * velocity_mm_s_;
   const double speed = velocity_mm_s_.norm();

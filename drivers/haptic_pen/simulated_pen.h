@@ -19,6 +19,7 @@ struct SimulatedHand {
   double stiffness_newton_m = 300;  ///< 0 and no damping: it lets go
   double damping_newton_s_m = 3;
   Eigen::Vector3d push_newton = Eigen::Vector3d::Zero();
+  std::uint32_t buttons = 0;  ///< that it presses, a bit each
 };
 /// Returns the hand at a time in seconds since the start. Must not allocate if ticks must not.
 using HandSource = std::function<SimulatedHand(double seconds)>;
@@ -52,6 +53,7 @@ class SimulatedPen final : public HapticPen {
   /// The true motion, which the loop doesn't see.
   const Eigen::Vector3d& position_mm() const { return position_mm_; }
   const Eigen::Vector3d& velocity_mm_s() const { return velocity_mm_s_; }
+  std::uint32_t buttons() const { return buttons_; }
   const Eigen::Vector3d& applied_newton() const { return applied_.newton; }
   /// Work of the motors on the pen since the start.
   double motor_joule() const { return motor_joule_; }
@@ -79,6 +81,7 @@ class SimulatedPen final : public HapticPen {
   std::uint64_t random_;
   Eigen::Vector3d position_mm_ = Eigen::Vector3d::Zero(), velocity_mm_s_ = Eigen::Vector3d::Zero();
   PenCommand applied_;
+  std::uint32_t buttons_ = 0;
   double motor_joule_ = 0;
   std::array<Sent, 32> sent_{};       ///< on the way to the motors
   std::array<Answer, 32> answers_{};  ///< on the way to the host; answers_[i].at_ns rises

@@ -26,15 +26,6 @@ Eigen::Vector3d pull_newton(const Eigen::Vector3d& pen_mm, const HapticGuides& g
   return 4 * feel.pull_newton * share * (1 - share) / nearest_mm * way_mm;
 }
 
-Eigen::Vector3d resistance_newton(const PenMotion& pen, const HapticResistance& slot, const Feel& feel) {
-  const Eigen::Vector3d direction = vector_of(slot.direction);
-  const double length = direction.norm();
-  if (!(length > 0.5 && length < 2) || !(slot.newton > 0)) return Eigen::Vector3d::Zero();
-  const double speed = pen.velocity_mm_s.dot(direction) / length;
-  const double share = std::clamp(speed / feel.resistance_full_mm_s, 0.0, 1.0);
-  return -share * std::min(slot.newton, feel.max_resistance_newton) / length * direction;
-}
-
 }  // namespace
 
 std::array<ForcePart, kForceKinds> force_parts(const PenMotion& pen, const ProxyContact& contact, const ForceSources& sources,
@@ -49,8 +40,6 @@ std::array<ForcePart, kForceKinds> force_parts(const PenMotion& pen, const Proxy
   part(ForceKind::damping) = {-feel.damping_newton_s_m * 1e-3 * pen.velocity_mm_s, 0, true};
   if (sources.guides != nullptr && sources.guides->placement == sources.placement)
     part(ForceKind::pull) = {pull_newton(pen.position_mm, *sources.guides, feel), sources.guides->time_ns, false};
-  if (sources.resistance != nullptr && sources.resistance->placement == sources.placement)
-    part(ForceKind::resistance) = {resistance_newton(pen, *sources.resistance, feel), sources.resistance->time_ns, false};
   return parts;
 }
 

@@ -20,7 +20,6 @@ struct Feel {
   double pull_newton = 0.3;         ///< max. pull to a guide
   double pull_reach_mm = 4;         ///< beyond this a guide doesn't pull
   double max_resistance_newton = 2;
-  double resistance_full_mm_s = 10;  ///< the resistance is full from this speed on
 };
 
 enum class ForceKind : std::uint8_t { contact, friction, damping, pull, resistance };
@@ -43,7 +42,7 @@ struct ForceSources {
 /// - contact and friction: stiffness * (proxy - pen), along the contact's normal and across it
 /// - damping: against the velocity
 /// - pull: toward the nearest guide; zero at the guide and at the reach, largest in the middle. A potential, so it gives back what it took
-/// - resistance: against the direction in which the elements get worse, only while the pen moves that way. It never pushes
+/// - resistance: zero, for it depends on the pen's way (resistance.h)
 std::array<ForcePart, kForceKinds> force_parts(const PenMotion& pen, const ProxyContact& contact, const ForceSources& sources,
                                                const Feel& feel);
 

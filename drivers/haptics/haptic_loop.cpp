@@ -31,13 +31,24 @@ HapticAnswer HapticLoop::step(const HapticTick& tick) {
   HapticAnswer answer;
   take_pose(tick.pen);
   Feel feel = tick.feel;
-  feel.stiffness_newton_m = answer.stiffness_newton_m = std::min(feel.stiffness_newton_m, max_stiffness_newton_m_);
+  const HapticResistance* resistance = tick.sources.resistance;
+  if (resistance != nullptr && resistance->placement != tick.sources.placement) resistance = nullptr;
+  // The springs of contact and resistance may act in one direction: both together keep to the device's bound, the resistance to half of it.
+  const double full_stretch_mm = std::max(kFullStretchMm, 2 * feel.max_resistance_newton / (max_stiffness_newton_m_ * 1e-3));
+  const double resisting_newton_m = resisting_newton(resistance, feel.max_resistance_newton) / (full_stretch_mm * 1e-3);
+  feel.stiffness_newton_m = answer.stiffness_newton_m = std::min(feel.stiffness_newton_m, max_stiffness_newton_m_ - resisting_newton_m);
   const HapticField* field = tick.sources.field;
   if (field != nullptr && field->placement != tick.sources.placement) field = nullptr;
   ForceSources sources = tick.sources;
   sources.field = field;
   answer.contact = proxy_.step(pose_.measured_ns != 0 ? field : nullptr, pose_.position_mm, feel.friction);
   answer.parts = force_parts(motion_, answer.contact, sources, feel);
+  if (resistance != nullptr)
+    answer.parts[static_cast<std::size_t>(ForceKind::resistance)] = {
+        resistance_.step(pose_.position_mm, pose_.measured_ns != 0 ? resistance : nullptr, feel.max_resistance_newton, full_stretch_mm),
+        resistance->time_ns, false};
+  else
+    resistance_.let_go();
 
   SafetyInput input;
   input.now_ns = tick.now_ns;

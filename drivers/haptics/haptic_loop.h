@@ -9,6 +9,7 @@
 #include "drivers/haptics/forces.h"
 #include "drivers/haptics/limits.h"
 #include "drivers/haptics/proxy.h"
+#include "drivers/haptics/resistance.h"
 #include "drivers/haptics/safety.h"
 
 namespace prismesh::drivers::haptics {
@@ -46,6 +47,7 @@ class HapticLoop {
   double max_newton_;
   Safety safety_;
   Proxy proxy_;
+  Resistance resistance_;
   haptic_pen::PenPose pose_;
   PenMotion motion_;
 };

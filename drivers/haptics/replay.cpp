@@ -11,7 +11,7 @@ namespace {
 constexpr std::int64_t kRestNs = 500'000'000;   ///< refills the allowance (HapticLimits::burst_joule at steady_watt)
 constexpr std::size_t kTicksBeforeArming = 40;  ///< more than the safety remembers of poses
 
-Eigen::Vector3d vector_of(const double (&numbers)[3]) { return {numbers[0], numbers[1], numbers[2]}; }
+Eigen::Vector3d recorded_vector(const double (&numbers)[3]) { return {numbers[0], numbers[1], numbers[2]}; }
 
 SafetyPhase phase_of(std::uint8_t number) {
   return number > static_cast<std::uint8_t>(SafetyPhase::latched) ? SafetyPhase::latched : static_cast<SafetyPhase>(number);
@@ -46,7 +46,7 @@ class Replay {
   Safety made(const SafetyRecord& stored) const {
     HapticLimits limits;
     limits.max_newton = record_.limits.max_newton;
-    return Safety(limits, vector_of(record_.limits.max_axis_newton), stored);
+    return Safety(limits, recorded_vector(record_.limits.max_axis_newton), stored);
   }
 
   void take(std::size_t t) {
@@ -82,7 +82,7 @@ class Replay {
     if (before == nullptr || before->phase != tick.phase || before->fault != tick.fault)
       report_.changes.push_back({t, phase_of(tick.phase), fault_of(tick.fault)});
     if (before != nullptr) report_.worst_gap_ns = std::max(report_.worst_gap_ns, passed_ns(before->now_ns, tick.now_ns));
-    const double newton = vector_of(tick.newton).norm();
+    const double newton = recorded_vector(tick.newton).norm();
     if (!(newton <= report_.max_newton)) report_.max_newton = newton;
     report_.lost_replies += tick.lost_replies;
     report_.limited_ticks += tick.tank_limited;
@@ -90,10 +90,11 @@ class Replay {
 
   SafetyInput input_of(const PenTick& tick) {
     for (std::size_t kind = 0; kind < kForceKinds; ++kind)
-      parts_[kind] = {vector_of(tick.parts[kind].newton), tick.parts[kind].from_ns, kind == static_cast<std::size_t>(ForceKind::damping)};
+      parts_[kind] = {recorded_vector(tick.parts[kind].newton), tick.parts[kind].from_ns,
+                      kind == static_cast<std::size_t>(ForceKind::damping)};
     SafetyInput input;
     input.now_ns = tick.now_ns;
-    input.position_mm = vector_of(tick.position_mm);
+    input.position_mm = recorded_vector(tick.position_mm);
     input.measured_ns = tick.measured_ns;
     input.ready = tick.ready != 0;
     input.io_error = tick.io_error != 0;

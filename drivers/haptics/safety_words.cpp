@@ -45,8 +45,6 @@ std::string_view fault_words(SafetyFault fault) {
   return "an unknown fault";
 }
 
-std::string fault_sentence(SafetyFault fault) {
-  return std::string(fault_words(fault)) + ", so its force is zero: arm it again (`prismesh devices --arm-pen`)";
-}
+std::string fault_sentence(SafetyFault fault) { return std::string(fault_words(fault)) + ", so its force is zero until it is armed again"; }
 
 }  // namespace prismesh::drivers::haptics

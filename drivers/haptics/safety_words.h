@@ -14,7 +14,7 @@ std::string_view fault_name(SafetyFault fault);
 
 /// "two poses were too far apart".
 std::string_view fault_words(SafetyFault fault);
-/// The same as a sentence, and what to do.
+/// The same, and what follows from it.
 std::string fault_sentence(SafetyFault fault);
 
 }  // namespace prismesh::drivers::haptics

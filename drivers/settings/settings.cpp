@@ -154,6 +154,16 @@ Key name_or_file(std::string_view name, std::string& to, const fs::path& folder,
           }};
 }
 
+/// A file; a name that isn't absolute is looked for beside the settings. Empty: none.
+Key file_beside(std::string_view name, std::string& to, const fs::path& folder) {
+  return {name, [&to, &folder](const toml::node& node) -> Problem {
+            const auto* value = node.as_string();
+            if (value == nullptr || value->get().find('\0') != std::string::npos) return "must be a file's name in quotes";
+            to = value->get().empty() ? std::string() : (folder / value->get()).lexically_normal().string();
+            return {};
+          }};
+}
+
 /// A mode like "1920x1080" or "1920x1080@60"; empty: the monitor's own.
 Key mode(std::string_view name, ModeSetting& to) {
   return {name, [&to](const toml::node& node) -> Problem {
@@ -224,11 +234,12 @@ Section servo_section(PrismServoSettings& servo, DeviceLines& places, const std:
        number("speed_mm_s", servo.speed_mm_s, 0.01, 1000, " mm/s"), number("lag_ms", servo.lag_ms, 0, 200, " ms")}};
 }
 
-Section pen_section(HapticPenSettings& pen) {
+Section pen_section(HapticPenSettings& pen, const fs::path& folder) {
   return {"haptic_pen",
           {choice("driver", {"none", "simulated"}, [&pen](std::size_t i) { pen.driver = PenDriver(i); }), device_file("port", pen.port),
-           number("max_newton", pen.max_newton, 0.1, 8, " N"), number("stiffness_newton_m", pen.stiffness_newton_m, 0, 5000, " N/m"),
-           number("friction", pen.friction, 0, 1, ""), number("damping_newton_s_m", pen.damping_newton_s_m, 0, 5, " N s/m"),
+           file_beside("hand_script", pen.hand_script, folder), number("max_newton", pen.max_newton, 0.1, 8, " N"),
+           number("stiffness_newton_m", pen.stiffness_newton_m, 0, 5000, " N/m"), number("friction", pen.friction, 0, 1, ""),
+           number("damping_newton_s_m", pen.damping_newton_s_m, 0, 5, " N s/m"),
            number("workspace_scale", pen.workspace_scale, 0.0001, 10000, " mm per length unit"),
            choice("hand", {"right", "left"}, [&pen](std::size_t i) { pen.left_handed = i == 1; })}};
 }
@@ -252,7 +263,7 @@ class Reader {
                  whole("hang_s", settings_.document.hang_s, 0, 86'400, " s")}},
         tracker_section(settings_.eye_tracker, places_, file_),
         servo_section(settings_.prism_servo, places_, file_),
-        pen_section(settings_.haptic_pen)};
+        pen_section(settings_.haptic_pen, folder_)};
     std::vector<std::string_view> names;
     for (const Section& section : sections) names.push_back(section.name);
     for (const auto& [key, node] : root) {

@@ -60,6 +60,8 @@ struct HapticPenSettings {
   double stiffness_newton_m = 600;  ///< of contact; the loop lowers it to what the device allows
   double friction = 0.2;            ///< Coulomb's coefficient on shells
   double damping_newton_s_m = 0.3;
+  /// What the simulated hand does: a file of a HandScript; empty: it wanders about.
+  std::string hand_script;
   double workspace_scale = 1;  ///< millimetres of the pen's motion for one of the model's length unit
   bool left_handed = false;
   bool operator==(const HapticPenSettings&) const = default;

@@ -351,8 +351,8 @@ TEST(PenSectionTest, says_what_to_do_next) {
   EXPECT_NE(advice_for(pen, false).find("Ctrl+Shift+P disarms it"), std::string::npos);
   EXPECT_NE(advice_for(pen, true).find("Esc takes it back"), std::string::npos);
   pen.state = "latched";
-  pen.trouble = "no pose came for more than 10 ms, so its force is zero.";
-  EXPECT_EQ(advice_for(pen, false), "no pose came for more than 10 ms, so its force is zero. Ctrl+Shift+P arms it again.");
+  pen.trouble = "no pose came for more than 10 ms, so its force is zero until it is armed again";
+  EXPECT_EQ(advice_for(pen, false), "no pose came for more than 10 ms, so its force is zero until it is armed again (Ctrl+Shift+P)");
   pen.state = "absent";
   pen.trouble = "its line can't be opened";
   EXPECT_EQ(advice_for(pen, false), "its line can't be opened");

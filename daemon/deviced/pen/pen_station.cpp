@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/file.h"
 #include "base/log.h"
+#include "drivers/haptic_pen/hand_script.h"
 #include "drivers/port/open_port.h"
 #include "drivers/port/pty_pair.h"
 
@@ -22,6 +24,15 @@ constexpr std::int64_t kTryAgainNs = 250'000'000;
 /// Far longer than what latches: the line is then opened anew.
 constexpr std::int64_t kMaxSilenceOfPenNs = 1'000'000'000;
 constexpr int kSimulatedBaud = 115'200;
+
+Result<drivers::haptic_pen::HandSource> simulated_hand(const std::string& script) {
+  if (script.empty()) return drivers::haptic_pen::HandSource(framed::wandering_hand);
+  const Result<FileBytes> bytes = read_file(script);
+  if (!bytes) return fail(bytes.error());
+  Result<drivers::haptic_pen::HandScript> parsed = drivers::haptic_pen::HandScript::parse(bytes->text(), script);
+  if (!parsed) return fail(std::move(parsed.error()));
+  return drivers::haptic_pen::HandSource([parsed = std::move(*parsed)](double seconds) { return parsed.at(seconds); });
+}
 
 }  // namespace
 
@@ -42,8 +53,10 @@ Result<std::unique_ptr<PenStation>> PenStation::start(const drivers::settings::H
     Result<drivers::port::PtyPair> terminal = drivers::port::open_pty_pair();
     if (!terminal) return fail(std::move(terminal.error()));
     station->port_ = terminal->slave_path;
+    Result<drivers::haptic_pen::HandSource> hand = simulated_hand(settings.hand_script);
+    if (!hand) return fail(std::move(hand.error()));
     station->device_ = std::make_unique<framed::SimulatedDeviceThread>(std::move(terminal->master),
-                                                                       drivers::haptic_pen::SimulatedPenOptions{}, framed::wandering_hand);
+                                                                       drivers::haptic_pen::SimulatedPenOptions{}, std::move(*hand));
   }
   // What the last process has left: it may have died armed.
   const SafetyRecord stored = records.stored();

@@ -1,5 +1,8 @@
 #include "drivers/haptic_pen/framed/simulated_device.h"
 
+#include <pthread.h>
+#include <sched.h>
+
 #include <chrono>
 #include <cmath>
 #include <utility>
@@ -38,6 +41,7 @@ void SimulatedDevice::step(std::int64_t now_ns) {
     pose.position_mm[axis] = quantum_mm_ > 0 ? std::round(mm / quantum_mm_) * quantum_mm_ : mm;
   }
   pose.phase = PenPhase::ready;
+  pose.buttons = static_cast<std::uint8_t>(pen_.buttons());
   pose.answers = answers_;
   const FrameBytes bytes = encode(pose);
   (void)line_.write(bytes);  // a host that reads nothing loses poses
@@ -62,6 +66,9 @@ SimulatedDeviceThread::SimulatedDeviceThread(std::unique_ptr<port::BytePort> dev
       thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
 void SimulatedDeviceThread::run(const std::stop_token& stop) {
+  // A device doesn't wait for this machine's other programs. Where this isn't granted, the simulated one has to.
+  const sched_param lowest{.sched_priority = ::sched_get_priority_min(SCHED_FIFO)};
+  (void)::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &lowest);
   while (!stop.stop_requested()) {
     device_.step(clock_.now_ns());
     std::this_thread::sleep_for(std::chrono::microseconds(500));

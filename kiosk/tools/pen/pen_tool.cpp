@@ -153,11 +153,8 @@ render::Pen PenTool::drawn(const ipc::PenState& state, const PenPose& pose) cons
 void PenTool::show(const std::optional<render::Pen>& pen) {
   if (pen == shown_) return;
   if (pen && shown_) {
-    render::Pen still = *pen;
-    const bool at_rest = (still.tip - shown_->tip).norm() * hand_.place().scale < kStillMm && (still.shaft - shown_->shaft).norm() < 0.005;
-    still.tip = shown_->tip;
-    still.shaft = shown_->shaft;
-    if (at_rest && still == *shown_) return;
+    const bool at_rest = (pen->tip - shown_->tip).norm() * hand_.place().scale < kStillMm && (pen->shaft - shown_->shaft).norm() < 0.005;
+    if (at_rest && pen->busy == shown_->busy && pen->shell == shown_->shell && pen->node == shown_->node) return;
   }
   shown_ = pen;
   ++context_.changes;

@@ -80,27 +80,5 @@ TEST(forces, guides_of_another_placement_or_without_numbers_do_not_pull) {
   EXPECT_EQ(rig.at({2, 0, 0}).norm(), 0);
 }
 
-TEST(forces, resistance_grows_with_what_gets_worse_and_never_pushes) {
-  HapticResistance slot{.placement = 3, .time_ns = 55, .newton = 1.5, .direction = {0, 1, 0}};
-  const auto at = [&](double speed_mm_s) {
-    return force_parts({.velocity_mm_s = {5, speed_mm_s, 0}}, {}, {.resistance = &slot, .placement = 3}, {});
-  };
-  EXPECT_NEAR((newton(at(50), ForceKind::resistance) - Eigen::Vector3d(0, -1.5, 0)).norm(), 0, 1e-12);
-  EXPECT_NEAR(newton(at(5), ForceKind::resistance).y(), -0.75, 1e-12) << "less at low speed";
-  EXPECT_EQ(newton(at(0), ForceKind::resistance).norm(), 0);
-  EXPECT_EQ(newton(at(-50), ForceKind::resistance).norm(), 0) << "free on the way back";
-  EXPECT_EQ(at(50)[static_cast<std::size_t>(ForceKind::resistance)].from_ns, 55);
-  slot.newton = 9;
-  EXPECT_NEAR(newton(at(50), ForceKind::resistance).y(), -2, 1e-12);
-  slot.newton = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(newton(at(50), ForceKind::resistance).norm(), 0);
-  slot.newton = 1;
-  slot.direction[1] = 0;
-  EXPECT_EQ(newton(at(50), ForceKind::resistance).norm(), 0);
-  slot.direction[1] = 1;
-  slot.placement = 4;
-  EXPECT_EQ(newton(at(50), ForceKind::resistance).norm(), 0);
-}
-
 }  // namespace
 }  // namespace prismesh::drivers::haptics

@@ -44,7 +44,7 @@ std::string all_of(const StationSettings& settings) {
        << '|' << settings.hand.mouse << '|' << settings.document.history_mb << '|' << settings.document.hang_s;
   const HapticPenSettings& p = settings.haptic_pen;
   text << '|' << int(p.driver) << p.port << '|' << p.max_newton << '|' << p.stiffness_newton_m << '|' << p.friction << '|'
-       << p.damping_newton_s_m << '|' << p.workspace_scale << '|' << p.left_handed;
+       << p.damping_newton_s_m << '|' << p.workspace_scale << '|' << p.left_handed << '|' << p.hand_script;
   return text.str();
 }
 
@@ -89,6 +89,7 @@ lag_ms = 20
 [haptic_pen]
 driver = "simulated"
 port = "/dev/pts/9"
+hand_script = "push.hand"
 max_newton = 6
 stiffness_newton_m = 500
 friction = 0.1
@@ -102,7 +103,7 @@ TEST(Settings, an_empty_file_keeps_every_default) { EXPECT_EQ(all_of(parsed(""))
 TEST(Settings, every_key_is_read) {
   EXPECT_EQ(all_of(parsed(kEveryKey)),
             "anaglyph|6.5|2DP-1|1920 1080 60|1|1|1|/dev/serial/by-id/usb-tracker|9600|0|1|4243|12.5|0.5|1 210.5 -15|61|lean|"
-            "1|1|/dev/serial/by-id/usb-servo|57600|7|4|1|1000|1.5|6|20|middle-orbit|64|30|1/dev/pts/9|6|500|0.1|0.4|2.5|1");
+            "1|1|/dev/serial/by-id/usb-servo|57600|7|4|1|1000|1.5|6|20|middle-orbit|64|30|1/dev/pts/9|6|500|0.1|0.4|2.5|1|push.hand");
 }
 
 TEST(Settings, names_choose_drivers_and_dialects) {
@@ -157,6 +158,7 @@ TEST(Settings, refuses_errors_with_line_and_remedy) {
       {"[haptic_pen]\ndriver = 'falcon'\n",
        "station.toml:2: haptic_pen.driver has no \"falcon\"; the nearest is \"none\" of none, simulated"},
       {"[haptic_pen]\nhand = 'both'\n", "station.toml:2: haptic_pen.hand has no \"both\""},
+      {"[haptic_pen]\nhand_script = 7\n", "station.toml:2: haptic_pen.hand_script must be a file's name in quotes"},
       {"[haptic_pen]\nport = 'pen'\n", "station.toml:2: haptic_pen.port must be a device's whole path"},
       {"[display]\nprofile = \n", "station.toml:2: "},
       {"[display]\n[display]\n", "station.toml:2: "},

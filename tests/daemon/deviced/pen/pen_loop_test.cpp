@@ -152,7 +152,7 @@ TEST(Records, come_back_from_disk_and_a_spoilt_one_latches) {
   for (std::uint32_t fault = 0; fault <= static_cast<std::uint32_t>(SafetyFault::died_armed); ++fault) {
     const SafetyRecord record{SafetyPhase::latched, static_cast<SafetyFault>(fault), 0};
     EXPECT_EQ(parse_record(record_text(record)), record);
-    EXPECT_NE(fault_sentence(record.fault).find("arm it again"), std::string::npos);
+    EXPECT_NE(fault_sentence(record.fault).find("until it is armed again"), std::string::npos);
   }
   std::ofstream(folder / "pen-safety") << "latch";
   EXPECT_EQ(RecordStore(folder).stored(), (SafetyRecord{SafetyPhase::latched, SafetyFault::died_armed, 0}));
