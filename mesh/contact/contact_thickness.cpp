@@ -38,6 +38,7 @@ std::string_view name(ThicknessFrom from) {
     case ThicknessFrom::none: return "none";
     case ThicknessFrom::section: return "section";
     case ThicknessFrom::given: return "given";
+    case ThicknessFrom::contact: return "contact";
   }
   return "";
 }
@@ -51,6 +52,14 @@ ContactThickness section_thickness(const Model& model) {
     const PartIndex part = model.shell_parts[s];
     return part.valid() ? of_part[part.value] : 0.0;
   });
+}
+
+void take_contact_thickness(const Model& model, const std::vector<std::uint8_t>& seen, ContactThickness& thickness) {
+  for (std::size_t s = 0; s < model.shell_count(); ++s)
+    if (const PartIndex part = model.shell_parts[s]; seen[s] != 0 && part.valid() && thickness.of_shell[s] > 0)
+      thickness.of_part[part.value] = ThicknessFrom::contact;
+  // A part has none only if it has none in its contacts either: tools without a thickness may get one there.
+  std::erase_if(thickness.without, [&](PartIndex part) { return thickness.of_part[part.value] == ThicknessFrom::contact; });
 }
 
 ContactThickness given_thickness(const Model& model, double thickness) {

@@ -14,6 +14,7 @@ enum class ThicknessFrom : std::uint8_t {
   none,     ///< no shell of the part has one
   section,  ///< the element's own card, else the part's section
   given,    ///< one number for all shells
+  contact,  ///< a contact of the deck
 };
 std::string_view name(ThicknessFrom from);
 
@@ -27,6 +28,9 @@ struct ContactThickness {
 
 /// The element's own thickness, else that of its part's section. What isn't a finite number above 0 counts as none.
 ContactThickness section_thickness(const Model& model);
+/// Sets anew, after contacts have set thicknesses, where each part's come from: where a shell of a part is seen by a contact, from that.
+/// `seen`: one a shell, 0: no contact sees it.
+void take_contact_thickness(const Model& model, const std::vector<std::uint8_t>& seen, ContactThickness& thickness);
 /// The same thickness for every shell. Precondition: finite, above 0.
 ContactThickness given_thickness(const Model& model, double thickness);
 

@@ -84,6 +84,7 @@ Result<OpenedDeck> finish(DeckContents found, std::vector<Warning> of_saves, Wat
   deck->format = found.format;
   deck->content = content_hash(found.files, found.hashes);
   deck->time_step = found.time_step;
+  deck->contacts = std::move(found.contacts);
   deck->length_unit = found.length_unit;
   deck->frames = std::move(found.frames);
   deck->id_offsets = std::move(found.id_offsets);

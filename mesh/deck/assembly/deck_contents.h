@@ -23,6 +23,7 @@ struct DeckContents {
   std::vector<Part> parts;             ///< defined ones, ascending by id
   References references;
   TimeStepControl time_step;
+  ContactCards contacts;
   std::optional<LengthUnit> length_unit;  ///< nullopt: the deck doesn't give it
   Warnings warnings;
   std::vector<std::string> missing_files;

@@ -17,6 +17,7 @@
 #include "base/units.h"
 #include "mesh/deck/data/frame.h"
 #include "mesh/deck/data/taken_ids.h"
+#include "mesh/model/contact_cards.h"
 #include "mesh/model/model.h"
 #include "mesh/model/references.h"
 
@@ -142,6 +143,7 @@ struct Deck {
   std::map<std::string, std::size_t, std::less<>> element_kinds;  ///< cards by the deck's own word: "CQUAD4", "SHELL_THICKNESS", "S4R"
   std::shared_ptr<const References> references;                   ///< cards that name entities; never null after opening
   TimeStepControl time_step;
+  ContactCards contacts;  ///< of LS-DYNA decks
   std::optional<LengthUnit> length_unit;  ///< nullopt: the deck doesn't give it
   TakenIds taken;                         ///< united
   std::vector<CompanionFile> companions;

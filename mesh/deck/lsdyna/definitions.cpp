@@ -81,6 +81,14 @@ int option_cards(std::string_view keyword, const Card* inertia, const Parameters
   return cards;
 }
 
+/// The card of _CONTACT and those behind it.
+int cards_from_contact(std::string_view keyword) {
+  int cards = 1;
+  for (const std::string_view option : {"_PRINT", "_ATTACHMENT_NODES", "_FIELD"})
+    if (has_option(keyword, option)) ++cards;
+  return cards;
+}
+
 /// The number of cards for `values`, eight each. Limited to what a solver accepts.
 int cards_of_eight(double values) { return static_cast<int>((std::clamp(values, 0.0, 10000.0) + 7) / 8); }
 
@@ -100,7 +108,7 @@ bool Definitions::read(std::string_view text, const Block& block, const Paramete
   } else if (name == "CONTROL_TIMESTEP") {
     read_time_step(text, block, parameters);
   } else {
-    return false;
+    return contacts_.read(text, block, parameters, context);
   }
   return true;
 }
@@ -140,6 +148,12 @@ void Definitions::read_parts(std::string_view text, const Block& block, const Pa
       if (!cards.next(card)) return;
       left = option_cards(block.name, &card, parameters) - 1;
     }
+    if (id && has_option(block.name, "_CONTACT")) {
+      const int before = left - cards_from_contact(block.name);
+      if (!cards.skip(before) || !cards.next(card)) return;
+      contacts_.read_part(*id, card, parameters, *context_);
+      left -= before + 1;
+    }
     if (!cards.skip(left)) return;
   }
 }
@@ -153,7 +167,10 @@ void Definitions::read_composite_part(std::string_view text, const Block& block,
   const std::optional<std::int64_t> id = id_or_none(card.integer(0, parameters), context_->offsets.part);
   if (!id) return;
   Part part;
-  if (has_option(block.name, "_CONTACT") && !cards.skip(1)) return;
+  if (has_option(block.name, "_CONTACT")) {
+    if (!cards.next(card)) return;
+    contacts_.read_part(*id, card, parameters, *context_);
+  }
   const std::size_t layers_a_card = has_option(block.name, "_LONG") ? 1 : 2;
   std::vector<Layer> layers;
   double thickness = 0;

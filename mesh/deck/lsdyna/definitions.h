@@ -1,4 +1,4 @@
-// Reads parts, sections, materials and the time step control (LS-DYNA keyword manual, volumes I and II).
+// Reads parts, sections, materials, contacts and the time step control (LS-DYNA keyword manual, volumes I and II).
 #pragma once
 
 #include <cstdint>
@@ -10,6 +10,7 @@
 
 #include "mesh/deck/data/deck.h"
 #include "mesh/deck/lsdyna/card.h"
+#include "mesh/deck/lsdyna/contact_cards.h"
 #include "mesh/deck/lsdyna/includes.h"
 #include "mesh/deck/lsdyna/keyword.h"
 #include "mesh/deck/lsdyna/parameters.h"
@@ -41,6 +42,7 @@ class Definitions {
   /// The defined parts, with the values of their sections and materials, ascending by id.
   std::vector<Part> parts() const;
   const TimeStepControl& time_step() const { return time_step_; }
+  ContactCards contacts() const { return contacts_.cards(); }
 
  private:
   struct Layer {
@@ -62,6 +64,7 @@ class Definitions {
   std::map<std::int64_t, double> section_thickness_;
   std::map<std::int64_t, Material> materials_;
   TimeStepControl time_step_;
+  ContactReader contacts_;
   std::vector<BadField> bad_fields_;
 };
 

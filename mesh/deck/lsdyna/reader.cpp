@@ -36,6 +36,7 @@ std::optional<DeckContents> read_once(Walk& walk, Watch& watch) {
   found.companions = std::move(walk.files.companions);
   found.unread_files = std::move(walk.files.unread);
   found.time_step = walk.definitions.time_step();
+  found.contacts = walk.definitions.contacts();
   found.parts = walk.definitions.parts();
   found.warnings = std::move(walk.warnings);
   return found;

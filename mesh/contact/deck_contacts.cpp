@@ -1,0 +1,192 @@
+#include "mesh/contact/deck_contacts.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "base/parallel_for.h"
+
+namespace prismesh::mesh::contact {
+
+namespace {
+
+constexpr int kMaxDepth = 16;         ///< of sets that name sets; a set that names itself ends there
+constexpr double kShareOfSide = 0.4;  ///< of single surface contacts without SSTHK
+constexpr std::size_t kShellGrain = 8192;
+
+/// What a set names, with the sets that it names.
+struct Members {
+  std::vector<std::uint8_t> parts, shells, nodes;
+};
+
+class MemberFinder {
+ public:
+  MemberFinder(const Model& model, const References& references, Members& members)
+      : model_(model), references_(references), members_(members) {
+    members.parts.assign(model.parts->size(), 0);
+    members.shells.assign(model.shell_count(), 0);
+    members.nodes.assign(model.node_count(), 0);
+  }
+
+  void add(Referred referred, std::int64_t id, int depth = 0) {
+    if (!is_set(referred)) return mark({referred, ReferenceRole::single, id, id});
+    if (depth >= kMaxDepth) return;
+    const auto referrers = references_.referrers();
+    std::vector<std::uint8_t> is_of_set(referrers.size(), 0);
+    bool any = false;
+    for (std::size_t r = 0; r < referrers.size(); ++r)
+      if (referrers[r].defines == referred && referrers[r].id == id) is_of_set[r] = 1, any = true;
+    if (!any) return;
+    std::vector<Reference> taken_away;
+    for (const Reference& reference : references_.all()) {
+      if (is_of_set[reference.referrer] == 0) continue;
+      if (reference.takes_away)
+        taken_away.push_back(reference);
+      else if (is_set(reference.referred))
+        add(reference.referred, reference.first, depth + 1);
+      else
+        mark(reference);
+    }
+    for (const Reference& reference : taken_away) mark(reference, 0);
+  }
+
+ private:
+  void mark(const Reference& reference, std::uint8_t as = 1) {
+    switch (reference.referred) {
+      case Referred::part:
+        for (std::size_t p = 0; p < members_.parts.size(); ++p)
+          if (reference.names((*model_.parts)[p].id)) members_.parts[p] = as;
+        break;
+      case Referred::shell:
+      case Referred::any_element:
+        each_named(
+            reference, model_.shell_count(), [&](std::size_t s) { return model_.shell_ids[s]; },
+            [&](std::int64_t id) { return model_.find_shell(id).value; }, members_.shells, as);
+        break;
+      case Referred::node:
+        each_named(
+            reference, model_.node_count(), [&](std::size_t n) { return model_.node_ids[n]; },
+            [&](std::int64_t id) { return model_.find_node(id).value; }, members_.nodes, as);
+        break;
+      default: break;
+    }
+  }
+
+  /// Short ranges by the index of ids, long ones by all ids.
+  template <class IdOf, class Find>
+  static void each_named(const Reference& reference, std::size_t count, IdOf&& id_of, Find&& find, std::vector<std::uint8_t>& marks,
+                         std::uint8_t as) {
+    const std::int64_t step = std::max<std::int64_t>(1, reference.step);
+    if ((reference.last - reference.first) / step < static_cast<std::int64_t>(count / 8 + 16)) {
+      for (std::int64_t id = reference.first; id <= reference.last; id += step)
+        if (const std::size_t at = find(id); at < count) marks[at] = as;
+      return;
+    }
+    for (std::size_t at = 0; at < count; ++at)
+      if (reference.names(id_of(at))) marks[at] = as;
+  }
+
+  const Model& model_;
+  const References& references_;
+  Members& members_;
+};
+
+double shortest_side(const Model& model, ShellIndex shell) {
+  const ShellNodes& nodes = model.shell(shell);
+  const std::size_t corners = nodes.is_triangle() ? 3 : 4;
+  double shortest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < corners; ++i)
+    shortest = std::min(shortest, (model.position(nodes.node[(i + 1) % corners]) - model.position(nodes.node[i])).norm());
+  return shortest;
+}
+
+}  // namespace
+
+DeckContacts::DeckContacts(const Model& model, const ContactCards& cards, const References& references) : model_(model), cards_(cards) {
+  for (const ContactCard& card : cards.cards) {
+    if (card.ties) continue;
+    Sides sides;
+    sides.card = &card;
+    sides.a = find(card.a, references);
+    if (card.b) sides.b = find(*card.b, references);
+    sides_.push_back(std::move(sides));
+  }
+}
+
+DeckContacts::Side DeckContacts::find(const ContactSide& side, const References& references) const {
+  Side found;
+  found.card = &side;
+  found.everything = side.everything;
+  if (side.everything || !side.referred) return found;
+  Members members;
+  MemberFinder(model_, references, members).add(*side.referred, side.id);
+  if (side.all_but)
+    for (std::uint8_t& part : members.parts) part = part == 0;
+  found.parts = std::move(members.parts);
+  for (std::size_t s = 0; s < model_.shell_count(); ++s) {
+    if (model_.is_removed(ShellIndex(s))) continue;
+    const ShellNodes& nodes = model_.shell(ShellIndex(s));
+    const bool by_nodes = std::all_of(nodes.node.begin(), nodes.node.end(), [&](NodeIndex node) { return members.nodes[node.value] != 0; });
+    if (members.shells[s] != 0 || by_nodes) found.shells.push_back(ShellIndex(s));
+  }
+  return found;
+}
+
+bool DeckContacts::sees(const Side& side, ShellIndex shell) const {
+  if (side.everything) return true;
+  const PartIndex part = model_.shell_parts[shell.value];
+  if (part.valid() && part.value < side.parts.size() && side.parts[part.value] != 0) return true;
+  return std::binary_search(side.shells.begin(), side.shells.end(), shell);
+}
+
+/// [LS-DYNA Keyword] and the solver's own notes on contact thickness.
+double DeckContacts::thickness_in(const ContactCard& card, const ContactSide& side, ShellIndex shell, double own) const {
+  if (!card.thick) return 0;
+  PartContact of_part;
+  if (const PartIndex part = model_.shell_parts[shell.value]; part.valid())
+    if (const auto found = cards_.of_part.find((*model_.parts)[part.value].id); found != cards_.of_part.end()) of_part = found->second;
+  if (of_part.thickness > 0) return of_part.thickness;
+  if (side.thickness > 0) return side.thickness;
+  if (cards_.thickness > 0) return cards_.thickness;
+  double thickness = own * (of_part.scale > 0 ? of_part.scale : side.scale > 0 ? side.scale : 1);
+  if (card.limited_by_sides) thickness = std::min(thickness, kShareOfSide * shortest_side(model_, shell));
+  return thickness;
+}
+
+ContactThickness DeckContacts::thickness() const {
+  ContactThickness thickness = section_thickness(model_);
+  if (empty()) return thickness;
+  std::vector<double> own = thickness.of_shell;
+  std::vector<std::uint8_t> seen(model_.shell_count(), 0);
+  parallel_for(model_.shell_count(), kShellGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) {
+      const ShellIndex shell(s);
+      if (model_.is_removed(shell)) continue;
+      double greatest = 0;
+      const auto take = [&](const Sides& sides, const Side& side) {
+        if (!sees(side, shell)) return;
+        seen[s] = 1;
+        const double in_contact = thickness_in(*sides.card, *side.card, shell, own[s]);
+        if (in_contact > greatest) greatest = in_contact;
+      };
+      for (const Sides& sides : sides_) {
+        take(sides, sides.a);
+        if (sides.b) take(sides, *sides.b);
+      }
+      if (seen[s] != 0) thickness.of_shell[s] = greatest;
+    }
+  });
+  take_contact_thickness(model_, seen, thickness);
+  return thickness;
+}
+
+const ContactCard* DeckContacts::between(ShellIndex a, ShellIndex b) const {
+  for (const Sides& sides : sides_) {
+    const bool both =
+        sides.b ? (sees(sides.a, a) && sees(*sides.b, b)) || (sees(sides.a, b) && sees(*sides.b, a)) : sees(sides.a, a) && sees(sides.a, b);
+    if (both) return sides.card;
+  }
+  return nullptr;
+}
+
+}  // namespace prismesh::mesh::contact

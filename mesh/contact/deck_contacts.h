@@ -1,0 +1,50 @@
+// Which shells the contacts of a deck see, and how thick they are there. Rules: docs/contact.md.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "mesh/contact/contact_thickness.h"
+#include "mesh/model/contact_cards.h"
+#include "mesh/model/model.h"
+#include "mesh/model/node_set.h"
+#include "mesh/model/references.h"
+
+namespace prismesh::mesh::contact {
+
+/// Cheap to ask; both the model and the cards must outlive it.
+class DeckContacts {
+ public:
+  /// Finds the shells of both sides of each contact that keeps surfaces apart. `references`: of the deck, for the members of sets.
+  DeckContacts(const Model& model, const ContactCards& cards, const References& references);
+
+  bool empty() const { return sides_.empty(); }
+  /// The greatest thickness that a contact gives each shell. Shells that no contact sees have that of their section.
+  ContactThickness thickness() const;
+  /// The first contact, in the deck's order, that keeps the shells apart; null: none does.
+  const ContactCard* between(ShellIndex a, ShellIndex b) const;
+
+ private:
+  struct Side {
+    bool everything = false;
+    std::vector<std::uint8_t> parts;  ///< by PartIndex; empty: none
+    ShellSet shells;                  ///< ascending
+    const ContactSide* card = nullptr;
+  };
+  struct Sides {
+    const ContactCard* card = nullptr;
+    Side a;
+    std::optional<Side> b;
+  };
+  Side find(const ContactSide& side, const References& references) const;
+  bool sees(const Side& side, ShellIndex shell) const;
+  double thickness_in(const ContactCard& card, const ContactSide& side, ShellIndex shell, double own) const;
+
+  const Model& model_;
+  const ContactCards& cards_;
+  std::vector<Sides> sides_;
+};
+
+}  // namespace prismesh::mesh::contact
