@@ -333,22 +333,22 @@ Planted plant(std::uint32_t seed) {
   const auto height = [=](double x, double y) { return bend_x * x * x + bend_y * y * y; };
   const Eigen::AngleAxisd tilted(tilt, Vec3(std::cos(turn), std::sin(turn), 0));
   double lowest = 1e9;
-  for (int i = 0; i <= 6; ++i)
-    for (int j = 0; j <= 6; ++j) {
-      const Vec3 at = tilted * Vec3(i - 3, j - 3, 0);
+  for (int i = 0; i <= 5; ++i)
+    for (int j = 0; j <= 5; ++j) {
+      const Vec3 at = tilted * Vec3(i - 2.5, j - 2.5, 0);
       lowest = std::min(lowest, at.z() - height(at.x() + off_x, at.y() + off_y));
     }
   const double depth = planted.depth;
-  planted.sheets.add(1, 16, 16, [=](int i, int j) { return Vec3(turned * Vec3(i - 8, j - 8, height(i - 8, j - 8)) + shift); });
-  planted.sheets.add(2, 6, 6, [=](int i, int j) {
-    const Vec3 at = tilted * Vec3(i - 3, j - 3, 0);
+  planted.sheets.add(1, 13, 13, [=](int i, int j) { return Vec3(turned * Vec3(i - 6, j - 6, height(i - 6, j - 6)) + shift); });
+  planted.sheets.add(2, 5, 5, [=](int i, int j) {
+    const Vec3 at = tilted * Vec3(i - 2.5, j - 2.5, 0);
     return Vec3(turned * Vec3(at.x() + off_x, at.y() + off_y, at.z() - lowest - depth) + shift);
   });
   return planted;
 }
 
 TEST(Separate, clears_what_is_planted_at_random) {
-  for (std::uint32_t seed = 1; seed <= 32; ++seed) {
+  for (std::uint32_t seed = 1; seed <= 30; ++seed) {
     const Planted planted = plant(seed);
     const Separated result = separate_in(planted.sheets, planted.thickness);
     if (result.done.regions_before == 0) continue;  // less deep than counts
