@@ -1,16 +1,14 @@
 // The edit that moves shells apart: what of the document it heeds, and that it is an edit like the others. The method is tested with
 // mesh/contact.
-#include <algorithm>
 #include <string>
 #include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
-
 #include <nlohmann/json.hpp>
 
 #include "mesh/contact/find_penetrations.h"
+#include "mesh/deck/sample.h"
 #include "tests/mesh/document/document_fixture.h"
 #include "tests/mesh/document/journal_session.h"
 #include "tests/mesh/document/sheets_deck.h"
@@ -132,6 +130,25 @@ TEST(SeparateEdit, survives_its_json) {
   EXPECT_EQ(edit_to_json(edit_of(edit_to_json(edit_of(text)).dump())), edit_to_json(edit_of(text)));
   EXPECT_EQ(edit_to_json(edit_of(text)).at("move"), "against");
   EXPECT_EQ(edit_to_json(edit_of(text)).at("at").size(), 3u);
+}
+
+TEST(SeparateEdit, pushes_a_bead_of_the_sample_back_that_goes_through_its_neighbour) {
+  const Folder folder;
+  ASSERT_TRUE(deck::write_sample(folder / "sample.k", 2000));
+  Result<Document> document = open(folder / "sample.k", {});
+  ASSERT_TRUE(document) << document.error().text();
+  must_apply(*document, R"({"edit":"select","expr":"5000104"})");
+  must_apply(*document, R"({"edit":"grow","rings":2})");
+  must_apply(*document, R"({"edit":"translate","by":[0.09,77.24,-0.02],"grab":5000104})");
+  const std::size_t failing = document->current().counts.fail, before = contacts(*document);
+  const EditReport report = must_apply(*document, R"({"edit":"separate","at":[347,15,146],"joined":true})");
+  EXPECT_EQ(report.separated->regions_removed, 1u) << why_left(report);
+  EXPECT_NEAR(report.separated->depth_before, 13.6, 0.1);
+  EXPECT_EQ(report.separated->depth_after, 0);
+  EXPECT_LE(report.separated->largest_move, report.separated->depth_before + (1.8 + 1.5) / 2 + 0.05 * 32);
+  EXPECT_EQ(report.lost_connections, 0u);
+  EXPECT_LE(document->current().counts.fail, failing);
+  EXPECT_LT(contacts(*document), before);
 }
 
 class SeparateDeckTest : public ::testing::Test {
