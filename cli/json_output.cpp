@@ -31,6 +31,18 @@ Json stopped_object(const document::StoppedRepair& stopped) {
           {"max_rounds", stopped.max_rounds}, {"bad_before", stopped.bad_before}, {"bad_left", stopped.bad_left}};
 }
 
+void add_separated(const document::Separated& separated, Json& object) {
+  Json left = Json::array();
+  for (const document::RegionLeft& region : separated.regions_left)
+    left.push_back({{"a", region.a}, {"b", region.b}, {"why", printable(region.why)}});
+  object["regions_before"] = separated.regions_before;
+  object["regions_removed"] = separated.regions_removed;
+  object["regions_left"] = std::move(left);
+  object["depth_before"] = separated.depth_before;
+  object["depth_after"] = separated.depth_after;
+  object["largest_move"] = separated.largest_move;
+}
+
 Json edit_object(const document::EditReport& report) {
   Json notes = Json::array();
   for (const std::string& note : report.notes) notes.push_back(printable(note));
@@ -50,6 +62,7 @@ Json edit_object(const document::EditReport& report) {
   object["lost"] = Json::array();
   for (const std::string& lost : report.lost) object["lost"].push_back(printable(lost));
   object["lost_connections"] = report.lost_connections;
+  if (report.separated) add_separated(*report.separated, object);
   if (report.stopped) object["stopped"] = stopped_object(*report.stopped);
   if (report.mass_before) object["mass_before"] = *report.mass_before;
   if (report.mass_after) object["mass_after"] = *report.mass_after;
@@ -173,7 +186,7 @@ std::string penetrations_json(const ContactFigures& figures) {
                {"joined", region.joined},
                {"contact", nullptr},
                {"clear", false},
-               {"why", "whether it can be separated isn't computed yet"},
+               {"why", "whether it can be separated isn't computed: the edit separate tries it"},
                {"thickness_from", region.thickness_from}};
     if (region.kind == "perforation") entry["length"] = region.length;
     list.push_back(std::move(entry));

@@ -122,8 +122,9 @@ bool on_free_edge(const Model& model, ShellIndex shell, const Vec3& point, doubl
 /// shell is thick.
 class CloseTo {
  public:
-  CloseTo(const Model& model, const spatial::BoxTree& tree, const ContactThickness& thickness, double gap, ShellIndex shell)
-      : model_(model), tree_(tree), thickness_(thickness), gap_(gap), shell_(shell) {}
+  CloseTo(const Model& model, const spatial::BoxTree& tree, const ContactThickness& thickness, double gap, const ShellSet* among,
+          ShellIndex shell)
+      : model_(model), tree_(tree), thickness_(thickness), gap_(gap), among_(among), shell_(shell) {}
 
   void find(std::vector<CloseShells>& found) {
     const double own = thickness_.of_shell[shell_.value];
@@ -138,6 +139,7 @@ class CloseTo {
       const double reach = (1 - kMinDepthShare) * (own + its) / 2 + gap_;
       if (!(spatial::distance2(box, its_box) <= spatial::bound_of_square(reach * reach))) return true;
       if (share_a_node(model_.shell(shell_), model_.shell(other))) return true;
+      if (among_ != nullptr && !std::binary_search(among_->begin(), among_->end(), other)) return true;
       if (const auto close = close_pair(other, (own + its) / 2, reach)) found.push_back(*close);
       return true;
     });
@@ -198,6 +200,7 @@ class CloseTo {
   const spatial::BoxTree& tree_;
   const ContactThickness& thickness_;
   double gap_;
+  const ShellSet* among_;
   ShellIndex shell_;
   Vec3 origin_ = Vec3::Zero();
   std::optional<OwnTriangles> own_;  ///< made when first needed
@@ -205,11 +208,15 @@ class CloseTo {
 
 }  // namespace
 
-std::vector<CloseShells> find_close_shells(const Model& model, const spatial::BoxTree& tree, const ContactThickness& thickness,
-                                           double gap) {
-  std::vector<std::vector<CloseShells>> of_range((model.shell_count() + kCloseGrain - 1) / kCloseGrain);
-  parallel_for(model.shell_count(), kCloseGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t s = begin; s < end; ++s) CloseTo(model, tree, thickness, gap, ShellIndex(s)).find(of_range[begin / kCloseGrain]);
+std::vector<CloseShells> find_close_shells(const Model& model, const spatial::BoxTree& tree, const ContactThickness& thickness, double gap,
+                                           const ShellSet* among) {
+  const std::size_t count = among != nullptr ? among->size() : model.shell_count();
+  std::vector<std::vector<CloseShells>> of_range((count + kCloseGrain - 1) / kCloseGrain);
+  parallel_for(count, kCloseGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) {
+      const ShellIndex shell = among != nullptr ? (*among)[s] : ShellIndex(s);
+      CloseTo(model, tree, thickness, gap, among, shell).find(of_range[begin / kCloseGrain]);
+    }
   });
   std::vector<CloseShells> all;
   for (auto& some : of_range) all.insert(all.end(), some.begin(), some.end());

@@ -157,7 +157,7 @@ void finish(const Model& model, const ContactThickness& thickness, double gap, P
 
 std::vector<Penetration> find_penetrations(const Model& model, const spatial::BoxTree& tree, const ContactThickness& thickness,
                                            const std::vector<ShellCrossing>& crossings, const PenetrationWish& wish) {
-  Pairs pairs = find_close_shells(model, tree, thickness, wish.gap);
+  Pairs pairs = find_close_shells(model, tree, thickness, wish.gap, wish.among);
   leave_out_crossings(pairs, crossings);
   leave_out_junctions(model, pairs);
   std::vector<Penetration> found = group(model, pairs, crossings, wish.selected);

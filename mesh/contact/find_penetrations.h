@@ -13,6 +13,7 @@ namespace prismesh::mesh::contact {
 struct PenetrationWish {
   double gap = 0;                      ///< how far the faces must be apart; finite, at least 0
   const ShellSet* selected = nullptr;  ///< ascending: only pairs with one of them count; nothing: all
+  const ShellSet* among = nullptr;     ///< ascending: only pairs of two of them are searched for and grouped; nothing: all
 };
 
 /// Returns the regions, the deepest first, then by parts and shells; on all cores, the same whatever their number. Pairs are those of

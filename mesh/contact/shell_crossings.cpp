@@ -122,18 +122,20 @@ std::vector<CurveSegment> segments_of(const Model& model, ShellIndex a, ShellInd
 
 }  // namespace
 
-std::vector<ShellCrossing> find_shell_crossings(const Model& model, const spatial::BoxTree& tree) {
-  std::vector<std::vector<ShellCrossing>> of_range((model.shell_count() + kCrossingGrain - 1) / kCrossingGrain);
-  parallel_for(model.shell_count(), kCrossingGrain, [&](std::size_t begin, std::size_t end) {
+std::vector<ShellCrossing> find_shell_crossings(const Model& model, const spatial::BoxTree& tree, const ShellSet* among) {
+  const std::size_t count = among != nullptr ? among->size() : model.shell_count();
+  std::vector<std::vector<ShellCrossing>> of_range((count + kCrossingGrain - 1) / kCrossingGrain);
+  parallel_for(count, kCrossingGrain, [&](std::size_t begin, std::size_t end) {
     std::vector<ShellCrossing>& found = of_range[begin / kCrossingGrain];
     for (std::size_t s = begin; s < end; ++s) {
-      const ShellIndex a(s);
+      const ShellIndex a = among != nullptr ? (*among)[s] : ShellIndex(s);
       if (!tree.contains(a)) continue;
       const spatial::FloatBox box = tree.box_of(a);
       const Vec3 low(box.low[0], box.low[1], box.low[2]), high(box.high[0], box.high[1], box.high[2]);
       if (!can_decide(low) || !can_decide(high)) continue;
       tree.near_box(low, high, 0, [&](ShellIndex b, const spatial::FloatBox&) {
         if (!(a < b) || share_a_node(model.shell(a), model.shell(b))) return true;
+        if (among != nullptr && !std::binary_search(among->begin(), among->end(), b)) return true;
         if (std::vector<CurveSegment> segments = segments_of(model, a, b); !segments.empty()) found.push_back({a, b, std::move(segments)});
         return true;
       });

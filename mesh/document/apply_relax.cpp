@@ -7,10 +7,9 @@
 #include "base/counted.h"
 #include "base/readable_number.h"
 #include "mesh/document/apply.h"
-#include "mesh/document/deck_relations.h"
 #include "mesh/document/dependents_report.h"
-#include "mesh/document/edge_middles.h"
 #include "mesh/document/edit_targets.h"
+#include "mesh/document/pins.h"
 #include "mesh/document/scope.h"
 #include "mesh/document/selection.h"
 #include "mesh/model/adjacency.h"
@@ -59,50 +58,6 @@ Result<Reach> find_reach(const Document& document, const Relax& edit) {
   return reach;
 }
 
-/// Why nodes stay, in the order in which the reasons are checked.
-enum class Stays : std::uint8_t { locked, held, other_element, joined, mid_side, goes };
-constexpr std::array<std::string_view, 5> kWhyStays{"of locked parts", "held by the deck", "with elements other than shells",
-                                                    "that cards join", "beside mid-side nodes that can't follow"};
-
-class Pins {
- public:
-  explicit Pins(const Generation& generation) : generation_(generation) {
-    const Model& model = generation.model;
-    if (model.midside)
-      for (const MidsideNodes& midside : *model.midside)
-        if (!model.is_removed(midside.shell)) pin_beside_middles(midside);
-    std::sort(beside_middles_.begin(), beside_middles_.end());
-  }
-
-  Stays of(NodeIndex node) const {
-    const Stays why = by_itself(node);
-    return why == Stays::goes && std::binary_search(beside_middles_.begin(), beside_middles_.end(), node) ? Stays::mid_side : why;
-  }
-
- private:
-  Stays by_itself(NodeIndex node) const {
-    if ((generation_.node_marks[node.value] & kLocked) != 0) return Stays::locked;
-    if (generation_.model.node_holds[node.value] != 0) return Stays::held;
-    if (!uses_at(*generation_.relations, node).empty()) return Stays::other_element;
-    return is_joined(*generation_.relations, node) ? Stays::joined : Stays::goes;
-  }
-
-  /// A mid-side node follows the ends of its edge. If it can't, or is a corner of another shell, the ends stay, and so does it.
-  void pin_beside_middles(const MidsideNodes& midside) {
-    const Model& model = generation_.model;
-    const ShellNodes& corners = model.shell(midside.shell);
-    const int count = corners.corners();
-    for (int i = 0; i < count; ++i) {
-      const NodeIndex node = midside.node[i];
-      if (!node.valid() || (model.adjacency->shells_of(node).empty() && by_itself(node) == Stays::goes)) continue;
-      beside_middles_.insert(beside_middles_.end(), {node, corners.node[i], corners.node[(i + 1) % count]});
-    }
-  }
-
-  const Generation& generation_;
-  NodeSet beside_middles_;
-};
-
 /// The nodes that may move; notes how many may not.
 NodeSet movable_of(const Generation& generation, const NodeSet& nodes, EditReport& report) {
   const Pins pins(generation);
@@ -144,21 +99,9 @@ void say_how(const relax::Relaxed& relaxed, EditReport& report) {
   if (relaxed.limited > 0) report.notes.push_back(counted(relaxed.limited, "node") + " stopped at max_move");
 }
 
-/// Half of what each end of its edge moved by.
-NodeSet let_middles_follow(const Model& before, const relax::Relaxed& relaxed, Generation& next) {
-  NodeSet followed;
-  for (const EdgeMiddle& middle : middles_in(before, relaxed.nodes, shells_touching(before, relaxed.nodes))) {
-    Vec3 by = Vec3::Zero();
-    for (const NodeIndex end : middle.end) by += 0.5 * (next.model.position(end) - before.position(end));
-    next.model.positions.set(middle.node.value, before.position(middle.node) + by);
-    followed.push_back(middle.node);
-  }
-  return followed;
-}
-
 void put_positions(const Document& document, const relax::Relaxed& relaxed, Generation& next, EditReport& report) {
   for (std::size_t i = 0; i < relaxed.nodes.size(); ++i) next.model.positions.set(relaxed.nodes[i].value, relaxed.positions[i]);
-  const NodeSet followed = let_middles_follow(document.current().model, relaxed, next);
+  const NodeSet followed = let_middles_follow(document.current().model, relaxed.nodes, next);
   NodeSet moved;
   std::set_union(relaxed.nodes.begin(), relaxed.nodes.end(), followed.begin(), followed.end(), std::back_inserter(moved));
   report.nodes_moved = moved.size();

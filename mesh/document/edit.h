@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "mesh/contact/separation.h"
 #include "mesh/document/judging.h"
 #include "mesh/model/model.h"
 #include "mesh/repair/operation.h"
@@ -179,11 +180,30 @@ struct Restructure {
   std::vector<std::string> at;
 };
 
+/// Which contacts are separated.
+enum class ContactKind : std::uint8_t { perforation, penetration };
+/// What follows a separation. Only `none` is there yet.
+enum class FollowUp : std::uint8_t { none, relax, repair };
+/// Moves shells that cross or are too close apart (docs/contact.md). Lengths are in the deck's unit.
+struct Separate {
+  std::optional<std::string> on;  ///< an expression of kind element: one side of the regions; absent: all
+  std::optional<std::string> against;
+  std::optional<std::array<double, 3>> at;  ///< only the region that is nearest
+  std::vector<ContactKind> kinds{ContactKind::perforation, ContactKind::penetration};
+  bool joined = false;  ///< also regions between parts that are joined there
+  double gap = 0;
+  contact::MovingSide move = contact::MovingSide::both;
+  std::optional<Vec3> direction;  ///< of any length but zero; absent: away from the other side
+  std::optional<double> max_move;
+  double allowed_depth = 0;
+  FollowUp follow = FollowUp::none;
+};
+
 struct Undo {};
 struct Redo {};
 
 using Edit = std::variant<Select, SelectRegion, SelectLasso, Grow, Shrink, Invert, SetParts, SetTargetSize, SetCriteria, Translate, Lift,
-                          Slide, Rotate, Move, Relax, Repair, Restructure, Undo, Redo>;
+                          Slide, Rotate, Move, Relax, Repair, Restructure, Separate, Undo, Redo>;
 
 /// The Shaping of a shaping edit; null for the others.
 const Shaping* shaping_of(const Edit& edit);

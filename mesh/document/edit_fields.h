@@ -29,6 +29,14 @@ PRISMESH_JSON_NAMES(mesh::document::Scope, {{"selection", mesh::document::Scope:
                                             {"damaged", mesh::document::Scope::damaged},
                                             {"failed", mesh::document::Scope::failed}});
 PRISMESH_JSON_NAMES(mesh::document::OnCancel, {{"discard", mesh::document::OnCancel::discard}, {"keep", mesh::document::OnCancel::keep}});
+PRISMESH_JSON_NAMES(mesh::document::ContactKind,
+                    {{"perforation", mesh::document::ContactKind::perforation}, {"penetration", mesh::document::ContactKind::penetration}});
+PRISMESH_JSON_NAMES(mesh::contact::MovingSide, {{"both", mesh::contact::MovingSide::both},
+                                                {"on", mesh::contact::MovingSide::on},
+                                                {"against", mesh::contact::MovingSide::against}});
+PRISMESH_JSON_NAMES(mesh::document::FollowUp, {{"none", mesh::document::FollowUp::none},
+                                               {"relax", mesh::document::FollowUp::relax},
+                                               {"repair", mesh::document::FollowUp::repair}});
 PRISMESH_JSON_NAMES(mesh::document::RelaxMode, {{"full", mesh::document::RelaxMode::full}, {"from", mesh::document::RelaxMode::from}});
 PRISMESH_JSON_NAMES(mesh::quality::SizeFrom, {{name(mesh::quality::SizeFrom::part), mesh::quality::SizeFrom::part},
                                               {name(mesh::quality::SizeFrom::deck), mesh::quality::SizeFrom::deck},
@@ -89,6 +97,7 @@ inline constexpr WholeNumberLimits kAttempts{1, 5};  ///< of a repair
 inline constexpr ListLimits kSteps{1, 1'000'000, "whole numbers like [532, 0]", ""};
 inline constexpr ListLimits kOutline{3, 100'000, "points [x, y]", "point"};
 inline constexpr ListLimits kEntities{1, 1000, "entities like [\"shell:12\", \"shell:40\"]", ""};
+inline constexpr ListLimits kContactKinds{1, 2, "kinds of contact like [\"perforation\", \"penetration\"]", ""};
 inline constexpr TwoWords kNormals{"grab", "each", "\"grab\" (all nodes along the normal at the grab) or \"each\""};
 
 template <>
@@ -155,6 +164,10 @@ PRISMESH_JSON_OBJECT(mesh::document::Relax, f("mode", m.mode), f("at", m.at), f(
 PRISMESH_JSON_OBJECT(mesh::document::Repair, f("scope", m.scope), f("angle", m.angle, kEdgeAngles), f("max_move", m.max_move),
                      f("on_cancel", m.on_cancel), f("stop_at", m.stop_at));
 PRISMESH_JSON_OBJECT(mesh::document::Restructure, f.required("at", m.at, kEntities));
+PRISMESH_JSON_OBJECT(mesh::document::Separate, f("on", m.on), f("against", m.against), f("at", m.at), f("kinds", m.kinds, kContactKinds),
+                     f("joined", m.joined), f("gap", m.gap, kNotNegative), f("move", m.move),
+                     f("direction", m.direction, DirectionLimits{}), f("max_move", m.max_move, kPositive),
+                     f("allowed_depth", m.allowed_depth, kNotNegative), f("follow", m.follow));
 PRISMESH_JSON_OBJECT(mesh::document::Undo, );
 PRISMESH_JSON_OBJECT(mesh::document::Redo, );
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -34,6 +35,7 @@ std::span<const EditKind> edit_kinds() {
         {"move", shaping, Move{}},
         {"relax", mending, Relax{}},
         {"repair", mending, Repair{}},
+        {"separate", EditGroup::contact, Separate{}},
         {"undo", step, Undo{}},
         {"redo", step, Redo{}},
     };
@@ -71,7 +73,9 @@ SelectionUse selection_use(const Edit& edit) {
   const bool writes = kind_of(edit).group == EditGroup::selection;
   return std::visit(
       [&](const auto& each) -> SelectionUse {
-        if constexpr (requires { each.on; })
+        if constexpr (std::is_same_v<std::decay_t<decltype(each)>, Separate>)
+          return {};  // without an expression it acts on all
+        else if constexpr (requires { each.on; })
           return {!each.on, writes};
         else if constexpr (requires { each.shaping; })
           return {!each.shaping.on, writes};

@@ -22,6 +22,21 @@ struct StoppedRepair {
   std::size_t bad_left = 0;
 };
 
+/// A region that `separate` left as it was.
+struct RegionLeft {
+  std::string a, b;  ///< "part:1"; empty: of no part
+  std::string why;
+};
+/// What `separate` did.
+struct Separated {
+  std::size_t regions_before = 0;
+  std::size_t regions_removed = 0;
+  std::vector<RegionLeft> regions_left;
+  double depth_before = 0;  ///< the greatest; deck's length unit
+  double depth_after = 0;
+  double largest_move = 0;
+};
+
 struct EditReport {
   std::string edit;
   std::size_t nodes_moved = 0;
@@ -33,6 +48,7 @@ struct EditReport {
   std::size_t clusters_after = 0;
   std::size_t triangle_pairs = 0;  ///< of `repair`: edges between two triangles that it made and that stay (docs/repairing.md)
   std::optional<StoppedRepair> stopped;
+  std::optional<Separated> separated;  ///< of `separate`
   // of edits that move nodes:
   std::size_t inverted = 0;           ///< shells that it turned over or folded (docs/shaping.md)
   std::size_t lost_connections = 0;   ///< nodes that lay on a sheet and no longer do (docs/connections.md)

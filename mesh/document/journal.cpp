@@ -152,7 +152,7 @@ bool reshapes(std::string_view intent) {
   const Result<Edit> edit = parse_edit(intent);
   if (!edit) return false;
   const EditGroup group = kind_of(*edit).group;
-  return group == EditGroup::shaping || group == EditGroup::step;
+  return group == EditGroup::shaping || group == EditGroup::contact || group == EditGroup::step;
 }
 
 /// The generation that results from applying the record's delta to the current one.

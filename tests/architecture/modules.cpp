@@ -35,7 +35,7 @@ const std::vector<Module>& modules() {
       {"mesh/shape", {"mesh/connections"}},
       {"mesh/relax", {"mesh/quality", "mesh/spatial"}},
       {"mesh/repair", {"mesh/relax"}},
-      {"mesh/document", {"base/json", "mesh/deck", "mesh/repair", "mesh/select", "mesh/shape"}},
+      {"mesh/document", {"base/json", "mesh/contact", "mesh/deck", "mesh/repair", "mesh/select", "mesh/shape"}},
 
       {"drivers/settings", {"base"}},
       {"drivers/port", {"base"}},

@@ -108,6 +108,24 @@ TEST(Messages, a_stopped_repair_survives_the_way) {
   EXPECT_EQ(stopped->bad_left, 41u);
 }
 
+TEST(Messages, what_was_separated_survives_the_way) {
+  Edited edited;
+  edited.report.separated = mesh::document::Separated{3, 2, {{"part:1", "", "half through"}}, 1.5, 0.25, 0.75};
+  const Result<FromDaemon> answer = decode_from_daemon(encode_answer(1, edited, 0));
+  ASSERT_TRUE(answer) << answer.error().text();
+  const auto& separated = std::get<Edited>(std::get<Answer>(answer->message)).report.separated;
+  ASSERT_TRUE(separated);
+  EXPECT_EQ(separated->regions_before, 3u);
+  EXPECT_EQ(separated->regions_removed, 2u);
+  ASSERT_EQ(separated->regions_left.size(), 1u);
+  EXPECT_EQ(separated->regions_left[0].a, "part:1");
+  EXPECT_EQ(separated->regions_left[0].b, "");
+  EXPECT_EQ(separated->regions_left[0].why, "half through");
+  EXPECT_EQ(separated->depth_before, 1.5);
+  EXPECT_EQ(separated->depth_after, 0.25);
+  EXPECT_EQ(separated->largest_move, 0.75);
+}
+
 TEST(Messages, an_error_survives_the_way_as_an_answer) {
   const auto sent = [](const Error& error) {
     const Result<FromDaemon> message = decode_from_daemon(encode_answer(1, failed_from(error)));

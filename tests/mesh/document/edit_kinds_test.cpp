@@ -40,6 +40,7 @@ TEST(EditKinds, groups_say_what_an_edit_changes) {
               ElementsAre("hide", "lock", "only", "reverse", "set_criteria", "set_target_size", "show", "unlock"));
   EXPECT_THAT(names_of(EditGroup::shaping), ElementsAre("lift", "move", "rotate", "slide", "translate"));
   EXPECT_THAT(names_of(EditGroup::mending), ElementsAre("collapse", "merge", "relax", "repair", "split", "swap"));
+  EXPECT_THAT(names_of(EditGroup::contact), ElementsAre("separate"));
   EXPECT_THAT(names_of(EditGroup::step), ElementsAre("redo", "undo"));
 }
 
@@ -76,6 +77,7 @@ TEST(EditKinds, say_what_they_have_to_do_with_the_selection) {
   EXPECT_EQ(use(R"({"edit":"repair"})"), "");
   EXPECT_EQ(use(R"({"edit":"repair","scope":"part"})"), "reads");
   EXPECT_EQ(use(R"({"edit":"split","at":["shell:1"]})"), "");
+  EXPECT_EQ(use(R"({"edit":"separate"})"), "");
   EXPECT_EQ(use(R"({"edit":"undo"})"), "");
 }
 

@@ -1,0 +1,260 @@
+#include "mesh/contact/separate.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <utility>
+
+#include "base/readable_number.h"
+#include "mesh/contact/facing_sides.h"
+#include "mesh/contact/meant_regions.h"
+#include "mesh/contact/separation_check.h"
+#include "mesh/contact/sort_unique.h"
+#include "mesh/contact/spread_lifts.h"
+#include "mesh/model/adjacency.h"
+
+namespace prismesh::mesh::contact {
+
+namespace {
+
+constexpr int kMaxRounds = 30;
+/// How steeply displacements fall off, the narrowest first: the first that does no harm is taken.
+constexpr std::array kSlopes{0.3, 0.15, 0.08, 0.04, 0.02};
+constexpr double kMaxExcess = 0.05;                    ///< of the target size: how much farther than needed a node may go
+constexpr double kMinCosOfWish = 0.17364817766693033;  ///< a wished direction within 80 degrees of the way out
+constexpr double kMissing = 1e-5;                      ///< of the least distance
+constexpr int kDigitsOfWhy = 3;
+
+/// One way to try.
+struct Attempt {
+  double upper_share = 1;
+  bool each_its_own = false;  ///< directions
+  double slope = 0;
+};
+
+/// What may help where an attempt failed.
+enum class Fails : std::uint8_t { for_good, gentler_may_help, own_directions_may_help };
+
+struct Outcome {
+  SeparatedModel state;
+  NodeSet moved;
+  std::string why;  ///< it failed; empty: it didn't
+  Fails fails_by = Fails::for_good;
+};
+
+class RegionSeparator {
+ public:
+  RegionSeparator(const SeparationInput& input, const SeparationWish& wish, const SeparatedModel& before, const MeantRegion& region)
+      : input_(input), wish_(wish), before_(before), region_(region) {}
+
+  /// The first attempt that does no harm; if none, the reason of the gentlest of the first kind.
+  Result<Outcome> separate(const Progress& progress, double fraction) const {
+    Outcome first;
+    const std::vector<double> all_shares = shares();
+    for (const double share : all_shares) {
+      const bool is_first = share == all_shares.front();
+      bool own_may_help = true;
+      for (const bool each_its_own : {false, true}) {
+        if (each_its_own && (region_.is_perforation || wish_.direction || !own_may_help)) continue;
+        for (const double slope : kSlopes) {
+          if (progress && !progress(fraction)) return fail(cancelled());
+          Outcome outcome = attempt({share, each_its_own, slope});
+          if (outcome.why.empty()) return outcome;
+          if (first.why.empty() || (is_first && !each_its_own)) first.why = outcome.why;
+          if (outcome.fails_by != Fails::gentler_may_help) {
+            own_may_help = outcome.fails_by == Fails::own_directions_may_help;
+            break;
+          }
+        }
+      }
+    }
+    return first;
+  }
+
+ private:
+  std::vector<double> shares() const {
+    const bool upper = region_.may_move[region_.upper], lower = region_.may_move[region_.lower()];
+    std::vector<double> shares;
+    if (upper && lower && !region_.is_perforation) shares.push_back(0.5);
+    if (upper) shares.push_back(1);
+    if (lower) shares.push_back(0);
+    return shares;
+  }
+
+  Outcome attempt(const Attempt& attempt) const {
+    Outcome outcome;
+    FacingSides sides(input_, wish_, before_.model, before_.tree, region_, attempt.each_its_own);
+    if (sides.cos_of_wish() < kMinCosOfWish) {
+      outcome.why = "the direction runs along the shells there";
+      return outcome;
+    }
+    SideLifts needed, lifts;
+    outcome.state.model = before_.model;
+    bool clear = false;
+    for (int round = 0; round < kMaxRounds && !clear; ++round) {
+      clear = sides.add_missing(outcome.state.model, lifts, attempt.upper_share, needed) <= kMissing * sides.reach();
+      if (clear) break;
+      outcome.why = why_not_lifted(needed, attempt.upper_share, sides, outcome.fails_by);
+      if (!outcome.why.empty()) return outcome;
+      lifts.upper = spread(needed.upper, attempt.slope);
+      lifts.lower = spread(needed.lower, attempt.slope);
+      put(lifts, outcome);
+    }
+    if (!clear) {
+      outcome.why = "its sides don't get clear of each other";
+      outcome.fails_by = Fails::own_directions_may_help;
+    } else {
+      finish(sides, outcome);
+    }
+    return outcome;
+  }
+
+  void finish(const FacingSides& sides, Outcome& outcome) const {
+    outcome.state.tree = before_.tree;
+    outcome.state.states = before_.states;
+    outcome.state.contacts = before_.contacts;
+    Harm harm = harm_of(input_, wish_, before_, outcome.state, outcome.moved, {sides.upper(), sides.lower()});
+    outcome.why = std::move(harm.why);
+    outcome.fails_by = harm.to_shells ? Fails::gentler_may_help : Fails::for_good;
+  }
+
+  Lifts spread(const Lifts& needed, double slope) const {
+    return spread_lifts(before_.model, needed, slope, [&](NodeIndex node) { return input_.why_stays(node).empty(); });
+  }
+
+  /// Upper lifts go along their directions, lower ones against them; a node of both, at which the sides hang together, by both.
+  void put(const SideLifts& lifts, Outcome& outcome) const {
+    outcome.state.model.positions = before_.model.positions;
+    std::map<NodeIndex, Vec3> by;
+    for (const auto& [node, lift] : lifts.upper) by.try_emplace(node, Vec3::Zero()).first->second += lift.length * lift.direction;
+    for (const auto& [node, lift] : lifts.lower) by.try_emplace(node, Vec3::Zero()).first->second -= lift.length * lift.direction;
+    outcome.moved.clear();
+    for (const auto& [node, move] : by) {
+      outcome.state.model.positions.set(node.value, before_.model.position(node) + move);
+      outcome.moved.push_back(node);
+    }
+  }
+
+  std::string why_not_lifted(const SideLifts& needed, double upper_share, const FacingSides& sides, Fails& fails_by) const {
+    double longest = 0, excess = 0;
+    const auto look = [&](const Lifts& lifts, double share, std::string& why) {
+      for (const auto& [node, lift] : lifts) {
+        const std::string_view stays = input_.why_stays(node);
+        if (!stays.empty() && why.empty()) why = "nodes of " + part_name(input_.model, part_at(node)) + " " + std::string(stays);
+        longest = std::max(longest, lift.length);
+        excess = std::max(excess, lift.length - share * region_.way / sides.cos_of_wish() - kMaxExcess * target_size_at(node));
+      }
+    };
+    std::string why;
+    look(needed.upper, upper_share, why);
+    look(needed.lower, 1 - upper_share, why);
+    if (!why.empty()) return why;
+    if (wish_.max_move && longest > *wish_.max_move) return "max_move is too small: it takes " + readable(longest, kDigitsOfWhy);
+    if (excess > 0) fails_by = Fails::own_directions_may_help;
+    if (excess > 0) return "the way out is longer than the region is deep: a node would go " + readable(longest, kDigitsOfWhy);
+    return {};
+  }
+
+  PartIndex part_at(NodeIndex node) const {
+    const auto shells = before_.model.adjacency->shells_of(node);
+    return shells.empty() ? PartIndex{} : before_.model.shell_parts[shells.front().value];
+  }
+  double target_size_at(NodeIndex node) const { return input_.criteria.of(part_at(node)).target_size; }
+
+  const SeparationInput& input_;
+  const SeparationWish& wish_;
+  const SeparatedModel& before_;
+  const MeantRegion& region_;
+};
+
+/// The model after one pass over the regions, with the shells that each region changed.
+struct Pass {
+  SeparatedModel state;
+  std::vector<ShellSet> touched;  ///< by region; empty: it was left
+  std::vector<std::string> why;   ///< by region; empty: it was removed
+};
+
+Result<Pass> separate_all(const SeparationInput& input, const SeparationWish& wish, const SeparatedModel& before,
+                          const std::vector<MeantRegion>& regions, const Progress& progress) {
+  Pass pass{before, std::vector<ShellSet>(regions.size()), {}};
+  for (std::size_t i = 0; i < regions.size(); ++i) {
+    const double fraction = static_cast<double>(i) / static_cast<double>(regions.size());
+    if (progress && !progress(fraction)) return fail(cancelled());
+    pass.why.push_back(regions[i].why_left);
+    if (!pass.why.back().empty()) continue;
+    Result<Outcome> outcome = RegionSeparator(input, wish, pass.state, regions[i]).separate(progress, fraction);
+    if (!outcome) return fail(outcome.error());
+    pass.why.back() = outcome->why;
+    if (!outcome->why.empty()) continue;
+    pass.touched[i] = shells_touching(pass.state.model, outcome->moved);
+    pass.state = std::move(outcome->state);
+  }
+  return pass;
+}
+
+/// Marks the regions as left whose change made new contacts that the look at its neighbourhood missed. Returns whether there are any.
+bool leave_harmful(const SeparatedModel& before, const Contacts& after, double gap, const Pass& pass, std::vector<MeantRegion>& regions) {
+  bool any = false;
+  for (const auto& [a, b] : worse_pairs(before.contacts, after, gap))
+    for (std::size_t i = 0; i < regions.size(); ++i) {
+      const ShellSet& touched = pass.touched[i];
+      const bool is_a = std::binary_search(touched.begin(), touched.end(), a);
+      if (!is_a && !std::binary_search(touched.begin(), touched.end(), b)) continue;
+      regions[i].why_left = "it would push " + part_name(before.model, before.model.shell_parts[(is_a ? a : b).value]) + " into " +
+                            part_name(before.model, before.model.shell_parts[(is_a ? b : a).value]);
+      any = true;
+    }
+  return any;
+}
+
+/// The greatest depth of what is left of the regions, as the model is now.
+double depth_left(const SeparationInput& input, const SeparationWish& wish, const SeparatedModel& state, const FoundContacts& found,
+                  const std::vector<MeantRegion>& regions) {
+  const SeparationInput now{state.model, state.tree, input.thickness, input.criteria, state.states, input.joints, input.why_stays};
+  SeparationWish anywhere = wish;
+  anywhere.at.reset();
+  ShellSet meant;
+  for (const MeantRegion& region : regions)
+    for (const ShellSet& shells : region.shells) meant.insert(meant.end(), shells.begin(), shells.end());
+  sort_unique(meant);
+  const auto is_of_them = [&](const MeantRegion& region) {
+    return std::any_of(region.shells[0].begin(), region.shells[0].end(),
+                       [&](ShellIndex shell) { return std::binary_search(meant.begin(), meant.end(), shell); });
+  };
+  double depth = 0;
+  for (const MeantRegion& region : find_meant_regions(now, anywhere, found))
+    if (is_of_them(region)) depth = std::max(depth, region.depth.value_or(0));
+  return depth;
+}
+
+}  // namespace
+
+Result<Separation> separate(const SeparationInput& input, const SeparationWish& wish, const Progress& progress) {
+  FoundContacts found = find_contacts(input, wish, input.model, input.tree);
+  std::vector<MeantRegion> regions = find_meant_regions(input, wish, found);
+  Separation done;
+  done.regions_before = regions.size();
+  for (const MeantRegion& region : regions) done.depth_before = std::max(done.depth_before, region.depth.value_or(0));
+  if (regions.empty()) return done;
+  const SeparatedModel before{input.model, input.tree, input.states, by_pair(found, wish.gap)};
+  Result<Pass> pass = separate_all(input, wish, before, regions, progress);
+  while (pass) {
+    found = find_contacts(input, wish, pass->state.model, pass->state.tree);
+    if (!leave_harmful(before, by_pair(found, wish.gap), wish.gap, *pass, regions)) break;
+    pass = separate_all(input, wish, before, regions, progress);
+  }
+  if (!pass) return fail(pass.error());
+  for (std::size_t i = 0; i < regions.size(); ++i)
+    if (!pass->why[i].empty()) done.left.push_back({regions[i].part[0], regions[i].part[1], pass->why[i]});
+  done.nodes = moved_nodes(input.model, pass->state.model);
+  for (const NodeIndex node : done.nodes) {
+    done.positions.push_back(pass->state.model.position(node));
+    done.largest_move = std::max(done.largest_move, (done.positions.back() - input.model.position(node)).norm());
+  }
+  done.depth_after = done.nodes.empty() ? done.depth_before : depth_left(input, wish, pass->state, found, regions);
+  return done;
+}
+
+}  // namespace prismesh::mesh::contact

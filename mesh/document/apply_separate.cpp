@@ -1,0 +1,154 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <iterator>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "base/counted.h"
+#include "base/readable_number.h"
+#include "mesh/contact/separate.h"
+#include "mesh/document/apply.h"
+#include "mesh/document/deck_relations.h"
+#include "mesh/document/dependents_report.h"
+#include "mesh/document/joined_sheets.h"
+#include "mesh/document/pins.h"
+#include "mesh/select/expression.h"
+
+namespace prismesh::mesh::document {
+
+namespace {
+
+constexpr std::size_t kMaxNotesOfLeft = 20;
+constexpr int kNoteDigits = 3;
+
+/// As predicates of nodes, in the order of Stays.
+constexpr std::array<std::string_view, 5> kStayAsPredicates{"are locked", "are held by the deck", "have elements other than shells",
+                                                            "are joined by cards", "are beside mid-side nodes that can't follow"};
+constexpr std::string_view kCarry = "carry welds or ties";
+
+Result<void> refuse_unsound(const Separate& edit) {
+  const auto sound = [](double value) { return std::isfinite(value) && value >= 0; };
+  if (edit.follow != FollowUp::none)
+    return fail("", "separate: \"follow\" can only be \"none\" in this version: relax or repair afterwards");
+  if (!sound(edit.gap) || !sound(edit.allowed_depth)) return fail("", "separate: gap and allowed_depth must be at least 0");
+  if (edit.max_move && !(sound(*edit.max_move) && *edit.max_move > 0)) return fail("", "separate: max_move must be greater than 0");
+  if (edit.direction && !(edit.direction->allFinite() && edit.direction->norm() > 0))
+    return fail("", "separate: the direction must not be zero");
+  if (edit.kinds.empty()) return fail("", "separate: \"kinds\" names no kind of contact");
+  return {};
+}
+
+Result<std::optional<ShellSet>> shells_named(const Generation& generation, const std::optional<std::string>& expression,
+                                             std::string_view field) {
+  if (!expression) return std::optional<ShellSet>();
+  Result<select::Chosen> chosen = select::evaluate(generation.model, *expression, select::EntityKind::element, generation.relations->names);
+  if (!chosen) return fail("", "separate: \"" + std::string(field) + "\": " + chosen.error().text());
+  std::sort(chosen->shells.begin(), chosen->shells.end());
+  return std::optional<ShellSet>(std::move(chosen->shells));
+}
+
+/// What each node may do.
+class Movable {
+ public:
+  explicit Movable(const Generation& generation) : pins_(generation), carries_(generation.model.node_count(), 0) {
+    for (const NodeOnSheet& each : generation.relations->dependents.on_sheets) {
+      carries_[each.node.value] = 1;
+      if (!generation.model.is_removed(each.shell))
+        for (const NodeIndex corner : generation.model.shell(each.shell).node) carries_[corner.value] = 1;
+    }
+  }
+  std::string_view why_stays(NodeIndex node) const {
+    const Stays why = pins_.of(node);
+    if (why != Stays::goes) return kStayAsPredicates[static_cast<std::size_t>(why)];
+    return carries_[node.value] != 0 ? kCarry : std::string_view();
+  }
+
+ private:
+  Pins pins_;
+  std::vector<std::uint8_t> carries_;
+};
+
+std::string part_reference(const Model& model, PartIndex part) {
+  return part.valid() ? "part:" + std::to_string((*model.parts)[part.value].id) : "";
+}
+
+void say_what(const Model& model, const contact::Separation& done, EditReport& report) {
+  Separated& separated = report.separated.emplace();
+  separated.regions_before = done.regions_before;
+  separated.regions_removed = done.removed();
+  separated.depth_before = done.depth_before;
+  separated.depth_after = done.depth_after;
+  separated.largest_move = done.largest_move;
+  for (const contact::LeftRegion& left : done.left)
+    separated.regions_left.push_back({part_reference(model, left.part_a), part_reference(model, left.part_b), left.why});
+  if (done.regions_before == 0) {
+    report.notes.push_back("nothing to separate: no shells cross or are too close there");
+    return;
+  }
+  report.notes.push_back("removed " + std::to_string(done.removed()) + " of " + counted(done.regions_before, "region") +
+                         "; the greatest depth " + readable(done.depth_before, kNoteDigits) + " -> " +
+                         readable(done.depth_after, kNoteDigits) + ", the farthest node moved " + readable(done.largest_move, kNoteDigits));
+  const auto with = [](const std::string& part) { return part.empty() ? std::string("no part") : part; };
+  for (std::size_t i = 0; i < std::min(separated.regions_left.size(), kMaxNotesOfLeft); ++i) {
+    const RegionLeft& left = separated.regions_left[i];
+    report.notes.push_back("left " + with(left.a) + " and " + with(left.b) + ": " + left.why);
+  }
+  if (separated.regions_left.size() > kMaxNotesOfLeft)
+    report.notes.push_back(counted(separated.regions_left.size() - kMaxNotesOfLeft, "region") + " more left");
+}
+
+void put_positions(const Document& document, const contact::Separation& done, Generation& next, EditReport& report) {
+  for (std::size_t i = 0; i < done.nodes.size(); ++i) next.model.positions.set(done.nodes[i].value, done.positions[i]);
+  const NodeSet followed = let_middles_follow(document.current().model, done.nodes, next);
+  NodeSet moved;
+  std::set_union(done.nodes.begin(), done.nodes.end(), followed.begin(), followed.end(), std::back_inserter(moved));
+  report.nodes_moved = moved.size();
+  next.surface = std::make_shared<const Model>(next.model);
+  const ShellSet touched = shells_touching(next.model, done.nodes);
+  quality::rejudge(next.model, judged_by(document), touched, next.quality, next.counts);
+  update_weight(document.current(), touched, next);
+  report_dependents(document.current(), next, moved, report);
+}
+
+}  // namespace
+
+Result<void> apply_edit(const Document& document, const Separate& edit, Generation& next, EditReport& report, const Progress& progress) {
+  if (const Result<void> sound = refuse_unsound(edit); !sound) return sound;
+  const Generation& current = document.current();
+  const Result<std::optional<ShellSet>> on = shells_named(current, edit.on, "on");
+  if (!on) return fail(on.error());
+  const Result<std::optional<ShellSet>> against = shells_named(current, edit.against, "against");
+  if (!against) return fail(against.error());
+  const auto has_kind = [&](ContactKind kind) { return std::find(edit.kinds.begin(), edit.kinds.end(), kind) != edit.kinds.end(); };
+  contact::SeparationWish wish;
+  wish.on = *on ? &**on : nullptr;
+  wish.against = *against ? &**against : nullptr;
+  if (edit.at) wish.at = Vec3((*edit.at)[0], (*edit.at)[1], (*edit.at)[2]);
+  wish.perforations = has_kind(ContactKind::perforation);
+  wish.penetrations = has_kind(ContactKind::penetration);
+  wish.joined = edit.joined;
+  wish.gap = edit.gap;
+  wish.move = edit.move;
+  wish.direction = edit.direction;
+  wish.max_move = edit.max_move;
+  wish.allowed_depth = edit.allowed_depth;
+  const Movable movable(current);
+  const spatial::BoxTree tree(current.model);
+  const contact::ContactThickness thickness = contact::section_thickness(current.model);
+  const std::vector<connections::JoinedSheets::Pair> pairs = joints(current);
+  const Result<contact::Separation> done = contact::separate({current.model, tree, thickness, judged_by(document), current.quality, pairs,
+                                                              [&](NodeIndex node) { return movable.why_stays(node); }},
+                                                             wish, progress);
+  if (!done) return fail(done.error());
+  say_what(current.model, *done, report);
+  if (!done->nodes.empty()) put_positions(document, *done, next, report);
+  return {};
+}
+
+}  // namespace prismesh::mesh::document
