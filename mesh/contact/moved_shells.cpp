@@ -29,6 +29,54 @@ Eigen::AlignedBox3d box_about(const Model& model, ShellIndex shell) {
   return box;
 }
 
+/// The search about one moved shell.
+class TouchedBy {
+ public:
+  TouchedBy(const Model& model, const ContactThickness& thickness, ShellIndex shell)
+      : model_(model), thickness_(thickness), shell_(shell), close_to_(model, thickness, 0, shell), centre_(centre_of(shell)) {}
+
+  void take(ShellIndex other, double box_distance2) {
+    if (box_distance2 <= 0 && !crossing_segments(model_, shell_, other).empty()) {
+      crossed_.push_back(other);
+      return;
+    }
+    if (!(thickness_.of_shell[shell_.value] > 0) || !(thickness_.of_shell[other.value] > 0)) return;
+    const double reach = close_to_.reach(other);
+    if (box_distance2 <= spatial::bound_of_square(reach * reach)) near_.emplace_back((centre_of(other) - centre_).squaredNorm(), other);
+  }
+
+  const std::vector<ShellIndex>& crossed() const { return crossed_; }
+  bool any_near() const { return !near_.empty(); }
+  /// Of those taken that it doesn't cross: the one whose centre is nearest, if it is too close.
+  std::vector<CloseShells> nearest_close() { return close_of({&*std::min_element(near_.begin(), near_.end()), 1}); }
+  std::vector<CloseShells> all_close() { return close_of(near_); }
+
+ private:
+  using Near = std::pair<double, ShellIndex>;  ///< with the square of the centres' distance
+
+  Vec3 centre_of(ShellIndex shell) const {
+    const ShellNodes& nodes = model_.shell(shell);
+    return (model_.position(nodes.node[0]) + model_.position(nodes.node[1]) + model_.position(nodes.node[2]) +
+            model_.position(nodes.node[3])) /
+           4;
+  }
+  std::vector<CloseShells> close_of(std::span<const Near> others) {
+    std::vector<CloseShells> found;
+    for (const auto& [distance2, other] : others)
+      if (const auto pair = close_to_.pair(other)) found.push_back(*pair);
+    close_to_.leave_out_neighbours(found, 0);
+    return found;
+  }
+
+  const Model& model_;
+  const ContactThickness& thickness_;
+  ShellIndex shell_;
+  CloseTo close_to_;
+  Vec3 centre_;
+  std::vector<ShellIndex> crossed_;
+  std::vector<Near> near_;
+};
+
 }  // namespace
 
 MovedShells::MovedShells(const Model& model, const spatial::BoxTree& tree, std::shared_ptr<const ContactThickness> thickness,
@@ -36,54 +84,55 @@ MovedShells::MovedShells(const Model& model, const spatial::BoxTree& tree, std::
     : model_(model), tree_(tree), thickness_(std::move(thickness)), nodes_(nodes), shells_(shells), is_moved_(model.shell_count(), 0) {
   for (const ShellIndex shell : shells_) is_moved_[shell.value] = 1;
   for (const double each : thickness_->of_shell) max_thickness_ = std::max(max_thickness_, each);
-  for (const Touch& touch : all_touches()) before_.emplace_back(touch.moved, touch.other);
+  for (const Touch& touch : touches(true)) before_.emplace_back(touch.moved, touch.other);
 }
 
-std::vector<Touch> MovedShells::all_touches() const {
+std::vector<Touch> MovedShells::touches(bool all) const {
   std::vector<std::vector<Touch>> of_range((shells_.size() + kMovedGrain - 1) / kMovedGrain);
   parallel_for(shells_.size(), kMovedGrain, [&](std::size_t begin, std::size_t end) {
     std::vector<Touch>& found = of_range[begin / kMovedGrain];
-    std::vector<CloseShells> close;
-    for (std::size_t s = begin; s < end; ++s) {
-      const ShellIndex shell = shells_[s];
-      const Eigen::AlignedBox3d box = box_about(model_, shell);
-      if (box.isEmpty()) continue;
-      const double own = thickness_->of_shell[shell.value];
-      spatial::FloatBox own_box;
-      own_box.add(box.min());
-      own_box.add(box.max());
-      CloseTo close_to(model_, *thickness_, 0, shell);
-      close.clear();
-      tree_.near_box(box.min(), box.max(), own > 0 ? (own + max_thickness_) / 2 : 0,
-                     [&](ShellIndex other, const spatial::FloatBox& its_box) {
-                       if (is_moved_[other.value] != 0 || share_a_node(model_.shell(shell), model_.shell(other))) return true;
-                       const double distance2 = spatial::distance2(own_box, its_box);
-                       if (distance2 <= 0 && !crossing_segments(model_, shell, other).empty()) {
-                         found.push_back({shell, other, true, 0});
-                         return true;
-                       }
-                       if (!(own > 0) || !(thickness_->of_shell[other.value] > 0)) return true;
-                       const double reach = close_to.reach(other);
-                       if (!(distance2 <= spatial::bound_of_square(reach * reach))) return true;
-                       if (const auto pair = close_to.pair(other)) close.push_back(*pair);
-                       return true;
-                     });
-      close_to.leave_out_neighbours(close, 0);
-      for (const CloseShells& pair : close) found.push_back({shell, pair.a == shell ? pair.b : pair.a, false, pair.depth});
-    }
+    for (std::size_t s = begin; s < end; ++s) add_touches(shells_[s], all, found);
   });
-  std::vector<Touch> all;
-  for (const auto& some : of_range) all.insert(all.end(), some.begin(), some.end());
-  std::sort(all.begin(), all.end(), [](const Touch& x, const Touch& y) { return std::tie(x.moved, x.other) < std::tie(y.moved, y.other); });
-  return all;
+  std::vector<Touch> together;
+  for (const auto& some : of_range) together.insert(together.end(), some.begin(), some.end());
+  std::sort(together.begin(), together.end(),
+            [](const Touch& x, const Touch& y) { return std::tie(x.moved, x.other) < std::tie(y.moved, y.other); });
+  return together;
+}
+
+void MovedShells::add_touches(ShellIndex shell, bool all, std::vector<Touch>& found) const {
+  const Eigen::AlignedBox3d box = box_about(model_, shell);
+  if (box.isEmpty()) return;
+  spatial::FloatBox own_box;
+  own_box.add(box.min());
+  own_box.add(box.max());
+  const double own = thickness_->of_shell[shell.value];
+  TouchedBy about(model_, *thickness_, shell);
+  tree_.near_box(box.min(), box.max(), own > 0 ? (own + max_thickness_) / 2 : 0, [&](ShellIndex other, const spatial::FloatBox& its_box) {
+    if (is_moved_[other.value] == 0 && !share_a_node(model_.shell(shell), model_.shell(other)))
+      about.take(other, spatial::distance2(own_box, its_box));
+    return true;
+  });
+  const std::size_t first = found.size();
+  for (const ShellIndex other : about.crossed())
+    if (!was_before(shell, other)) found.push_back({shell, other, true, 0});
+  if (!about.any_near() || (!all && found.size() > first)) return;
+  const auto add_close = [&](const std::vector<CloseShells>& pairs) {
+    for (const CloseShells& pair : pairs)
+      if (const ShellIndex other = pair.a == shell ? pair.b : pair.a; !was_before(shell, other))
+        found.push_back({shell, other, false, pair.depth});
+  };
+  if (!all) add_close(about.nearest_close());
+  if (all || found.size() == first) add_close(about.all_close());
+}
+
+bool MovedShells::was_before(ShellIndex moved, ShellIndex other) const {
+  return std::binary_search(before_.begin(), before_.end(), std::pair(moved, other));
 }
 
 std::vector<Touch> MovedShells::at(std::span<const Vec3> positions) {
   for (std::size_t i = 0; i < nodes_.size(); ++i) model_.positions.set(nodes_[i].value, positions[i]);
-  std::vector<Touch> touches = all_touches();
-  std::erase_if(
-      touches, [&](const Touch& touch) { return std::binary_search(before_.begin(), before_.end(), std::pair(touch.moved, touch.other)); });
-  return touches;
+  return touches(false);
 }
 
 TouchSummary summary_of(const Model& model, std::span<const Touch> touches) {

@@ -28,14 +28,18 @@ class MovedShells {
   MovedShells(const Model& model, const spatial::BoxTree& tree, std::shared_ptr<const ContactThickness> thickness, const NodeSet& nodes,
               const ShellSet& shells);
 
-  /// The pairs of a moved and another shell that cross or are too close at these positions of the nodes, and weren't before; ascending, on
-  /// all cores. What counts is as in find_shell_crossings and find_close_shells, for each pair alone: T-junctions and seams that come about
-  /// count. Costs the moved shells and what is near them, not the model. Positions that aren't finite touch nothing. Precondition: one
-  /// position a node.
+  /// Pairs of a moved and another shell that cross or are too close at these positions of the nodes, and weren't before; ascending, on all
+  /// cores, the same whatever their number. Each moved shell that touches has at least one: all that it crosses; else the pair with the
+  /// nearest centre, if that is too close, so that a step needn't measure all; else all. What counts is as in find_shell_crossings and
+  /// find_close_shells, for each pair alone: T-junctions and seams that come about count. Costs the moved shells and what is near them,
+  /// not the model. Positions that aren't finite touch nothing. Precondition: one position a node.
   std::vector<Touch> at(std::span<const Vec3> positions);
 
  private:
-  std::vector<Touch> all_touches() const;
+  /// That weren't before. `all`: every pair.
+  std::vector<Touch> touches(bool all) const;
+  void add_touches(ShellIndex shell, bool all, std::vector<Touch>& found) const;
+  bool was_before(ShellIndex moved, ShellIndex other) const;
 
   Model model_;  ///< with the positions of the last step
   spatial::BoxTree tree_;

@@ -1,9 +1,19 @@
 // The list of places where parts touch, its words, and what a pull touches in words.
+#include <atomic>
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
 #include <set>
+#include <string>
+#include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "ipc/model/messages_json.h"
+#include "ipc/model/state_page.h"
+#include "ipc/wire/server.h"
+#include "kiosk/tools/contact/contact_link.h"
 #include "kiosk/tools/contact/contact_panel.h"
 #include "kiosk/tools/contact/contact_tool.h"
 #include "kiosk/tools/contact/contact_words.h"
@@ -65,6 +75,102 @@ TEST(ContactPicture, has_the_ways_out_of_the_chosen_region_only) {
   ASSERT_EQ(second.vectors.size(), 1u) << "node 99 doesn't exist";
   EXPECT_EQ(second.vectors[0][0], mesh::Vec3(4, 0, 0));
   EXPECT_EQ(second.vectors[0][1], mesh::Vec3(1, 2, 3));
+}
+
+/// Welcomes its client and counts how often it is asked for contacts.
+class ContactServer final : public ipc::ServerHandler {
+ public:
+  explicit ContactServer(const std::filesystem::path& socket)
+      : page_(ipc::StatePage::create().value()), server_(ipc::Server::listen(socket, *this).value()) {
+    thread_ = std::thread([this] { server_.run(); });
+  }
+  ~ContactServer() override {
+    server_.stop();
+    thread_.join();
+  }
+  void connected(ipc::ClientId) override {}
+  void disconnected(ipc::ClientId, const std::string&) override {}
+  void line(ipc::ClientId client, std::string_view text) override {
+    const auto request = ipc::decode_request(text);
+    ASSERT_TRUE(request) << request.error().message;
+    if (std::holds_alternative<ipc::Hello>(request->request)) {
+      std::vector<ipc::Descriptor> descriptors;
+      descriptors.push_back(page_.descriptor().duplicate().value());
+      server_.send(client, ipc::encode_answer(request->number, ipc::Welcome{ipc::kProtocolVersion, "test", client}, 1),
+                   std::move(descriptors));
+    } else if (std::holds_alternative<ipc::GetContacts>(request->request)) {
+      ipc::Contacts contacts = three_places();
+      contacts.generation = generation;
+      if (++asked; refuses)
+        server_.send(client, ipc::encode_answer(request->number, ipc::Failed{"", 0, "cancelled"}, 0), {});
+      else
+        server_.send(client, ipc::encode_answer(request->number, contacts, 0), {});
+    } else {
+      server_.send(client, ipc::encode_answer(request->number, ipc::DocumentState{}, 0), {});
+    }
+  }
+
+  std::atomic<std::uint64_t> generation{1};
+  std::atomic<int> asked{0};
+  std::atomic<bool> refuses{false};
+
+ private:
+  ipc::StatePage page_;
+  ipc::Server server_;
+  std::thread thread_;
+};
+
+TEST(ContactLinkTest, asks_once_a_state_and_after_a_long_search_only_when_told) {
+  std::string name = (std::filesystem::temp_directory_path() / "prismesh-contact-XXXXXX").string();
+  const std::filesystem::path folder = ::mkdtemp(name.data());
+  {
+    ContactServer server(folder / "model.sock");
+    MonotonicClock real;
+    ManualClock clock;
+    link::ModelLink link(folder / "model.sock", std::nullopt, real, notices::Trace(nullptr));
+    ContactLink contact(link, clock);
+    const auto turn_until = [&](const auto& done) {
+      for (int tries = 0; tries < 30000 && !done(); ++tries, std::this_thread::sleep_for(std::chrono::milliseconds(1))) link.turn();
+      return done();
+    };
+    ASSERT_TRUE(turn_until([&] { return link.connection.connected(); }));
+    const auto answered = [&] { return turn_until([&] { return !contact.asking(); }); };
+    contact.want(1);
+    contact.want(1);
+    ASSERT_TRUE(answered());
+    ASSERT_NE(contact.contacts(), nullptr);
+    EXPECT_EQ(contact.contacts()->regions.size(), 3u);
+    contact.want(1);
+    EXPECT_FALSE(contact.asking()) << "it is here";
+    server.generation = 2;
+    contact.want(2);
+    EXPECT_TRUE(contact.asking());
+    clock.advance_ns(kMaxOwnSearchNs + 1);
+    ASSERT_TRUE(answered());
+    EXPECT_EQ(server.asked, 2);
+    contact.want(3);
+    EXPECT_FALSE(contact.asking()) << "the last one took long";
+    server.generation = 3;
+    contact.want(3, true);
+    ASSERT_TRUE(answered());
+    EXPECT_EQ(contact.contacts()->generation, 3u);
+    server.refuses = true;
+    contact.want(4);
+    ASSERT_TRUE(answered());
+    EXPECT_EQ(contact.problem(), "stopped; look again to see it");
+    EXPECT_EQ(contact.contacts()->generation, 3u) << "the ones before stay";
+    contact.want(4);
+    EXPECT_FALSE(contact.asking()) << "that state was refused";
+    EXPECT_EQ(server.asked, 4);
+    contact.want(4, true);
+    contact.forget();
+    EXPECT_TRUE(turn_until([&] { return server.asked == 5; }));
+    for (int turn = 0; turn < 50; ++turn) link.turn(), std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    EXPECT_EQ(contact.contacts(), nullptr) << "an answer to a question that was given up";
+    EXPECT_TRUE(contact.problem().empty());
+  }
+  std::error_code ignored;
+  std::filesystem::remove_all(folder, ignored);
 }
 
 class ContactPanel : public panels::GuiTest {

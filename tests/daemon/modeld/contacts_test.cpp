@@ -132,6 +132,17 @@ TEST_F(ContactsAsked, are_of_the_newest_state) {
   EXPECT_EQ(get().penetrations, 0u) << "nothing is kept of another deck";
 }
 
+TEST_F(ContactsAsked, know_the_shells_that_an_edit_makes) {
+  open(write_plates(file("near.k"), 0.75));
+  EXPECT_EQ(get().regions.at(0).shells_b, 25u);
+  edit(R"({"edit":"split","at":["shell:101"]})");
+  const ipc::Contacts contacts = get();
+  ASSERT_EQ(contacts.regions.size(), 1u);
+  EXPECT_EQ(contacts.regions[0].shells_b, 26u) << "two triangles in place of a quad";
+  edit(R"({"edit":"undo"})");
+  EXPECT_EQ(get().regions.at(0).shells_b, 25u);
+}
+
 TEST_F(ContactsAsked, take_gap_thickness_and_selection) {
   open(write_plates(file("thin.k"), 2, false));
   const ipc::Contacts plain = get();

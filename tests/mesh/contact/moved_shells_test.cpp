@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <functional>
 #include <limits>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -85,11 +86,37 @@ TEST(MovedShells, find_what_the_whole_search_finds_in_the_moved_model) {
   Model moved = drag.model;
   for (const NodeIndex node : drag.nodes) moved.positions.set(node.value, moved.position(node) + way);
   const spatial::BoxTree tree(moved);
-  std::set<std::pair<ShellIndex, ShellIndex>> expected, found;
-  for (const CloseShells& pair : find_close_shells(moved, tree, given_thickness(moved, 1), 0)) expected.emplace(pair.b, pair.a);
-  for (const Touch& touch : touches) found.emplace(touch.moved, touch.other);
-  EXPECT_EQ(found, expected);
-  EXPECT_GT(found.size(), 16u);
+  std::map<std::pair<ShellIndex, ShellIndex>, double> expected;
+  std::set<ShellIndex> expected_shells, shells;
+  for (const CloseShells& pair : find_close_shells(moved, tree, given_thickness(moved, 1), 0)) {
+    expected.emplace(std::pair(pair.b, pair.a), pair.depth);
+    expected_shells.insert(pair.b);
+  }
+  for (const Touch& touch : touches) {
+    shells.insert(touch.moved);
+    const auto pair = expected.find({touch.moved, touch.other});
+    ASSERT_NE(pair, expected.end());
+    EXPECT_EQ(pair->second, touch.depth);
+  }
+  EXPECT_EQ(shells, expected_shells) << "each that touches is found";
+  EXPECT_EQ(shells.size(), 16u);
+}
+
+TEST(MovedShells, find_those_whose_nearest_shell_does_not_touch) {
+  SheetsThatMeet sheets;
+  // The long shell's centre is far away; the small one's is nearer, but it lies beside.
+  sheets.add(1, 1, 1, [](int i, int j) { return Vec3(-1 + 40 * i, j, 0); });
+  sheets.add(2, 1, 1, [](int i, int j) { return Vec3(1.02 + 0.1 * i, j, 0.8); });
+  sheets.add(3, 1, 1, [](int i, int j) { return Vec3(i, j, 5); });
+  Model model = sheets.model();
+  model.shell_thickness.set(0, 1);
+  model.shell_thickness.set(1, 0.05F);
+  model.shell_thickness.set(2, 1);
+  TestDrag drag(model, 0, [](const Vec3& at) { return at.z() > 1; });
+  const std::vector<Touch> touches = drag.by({0, 0, -4.2});
+  ASSERT_EQ(touches.size(), 1u);
+  EXPECT_EQ(touches[0].other, ShellIndex(0u));
+  EXPECT_NEAR(touches[0].depth, 0.2, 1e-12);
 }
 
 TEST(MovedShells, cross_what_they_pass_through_without_any_thickness) {
