@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "mesh/document/field.h"
@@ -60,28 +59,6 @@ struct Gap {
   End from;
   End to;
   std::optional<FieldFigures> nodes;  ///< of the first set: their distances from the second
-};
-
-/// A region in which shells cross, or are too close.
-struct ContactRegion {
-  std::string kind;            ///< "perforation", "penetration" or "clearance"
-  std::string a, b;            ///< "part:1"; "" for shells without a part
-  std::string name_a, name_b;  ///< of the parts
-  std::size_t shells_a = 0, shells_b = 0;
-  double length = 0;                           ///< of the curve along which they cross; else 0
-  std::optional<double> max_depth;             ///< nothing: half through
-  double mean_depth = 0;                       ///< if the max is known
-  double area = 0;                             ///< of the shells of the smaller side
-  mesh::Vec3 at = mesh::Vec3::Zero();          ///< the deepest place; half through: a point of the curve
-  std::pair<std::string, std::string> shells;  ///< "shell:7" of each side: the deepest pair, or the first that cross
-  bool joined = false;                         ///< a weld, bond or tie joins the parts there
-  std::string thickness_from;
-};
-
-struct ContactFigures {
-  std::size_t perforations = 0, penetrations = 0, clearances = 0;
-  std::vector<ContactRegion> regions;           ///< perforations, then the others; of each the worst first
-  std::vector<std::int64_t> without_thickness;  ///< ids of parts, ascending
 };
 
 }  // namespace prismesh::cli

@@ -171,31 +171,31 @@ std::string distance_json(const Gap& gap) {
       .dump();
 }
 
-std::string penetrations_json(const ContactFigures& figures) {
+std::string penetrations_json(const mesh::document::Contacts& contacts) {
   Json list = Json::array();
-  for (const ContactRegion& region : figures.regions) {
+  for (const mesh::document::ContactRegion& region : contacts.regions) {
     Json entry{{"kind", region.kind},
                {"a", region.a},
                {"b", region.b},
-               {"shells_a", region.shells_a},
-               {"shells_b", region.shells_b},
+               {"shells_a", region.shells_a.size()},
+               {"shells_b", region.shells_b.size()},
                {"depth", region.max_depth ? Json{{"max", *region.max_depth}, {"mean", region.mean_depth}} : Json(nullptr)},
                {"area", region.area},
                {"at", point(region.at)},
-               {"worst", {region.shells.first, region.shells.second}},
+               {"worst", {region.worst_a, region.worst_b}},
                {"joined", region.joined},
                {"contact", nullptr},
                {"clear", false},
-               {"why", "whether it can be separated isn't computed: the edit separate tries it"},
+               {"why", region.why},
                {"thickness_from", region.thickness_from}};
     if (region.kind == "perforation") entry["length"] = region.length;
     list.push_back(std::move(entry));
   }
-  return Json{{"perforations", figures.perforations},
-              {"penetrations", figures.penetrations},
-              {"clearances", figures.clearances},
+  return Json{{"perforations", contacts.perforations},
+              {"penetrations", contacts.penetrations},
+              {"clearances", contacts.clearances},
               {"regions", list},
-              {"without_thickness", figures.without_thickness}}
+              {"without_thickness", contacts.without_thickness}}
       .dump();
 }
 

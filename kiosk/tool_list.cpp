@@ -2,6 +2,7 @@
 
 #include "kiosk/editor_keys.h"
 #include "kiosk/tools/comparison/comparison_tool.h"
+#include "kiosk/tools/contact/contact_tool.h"
 #include "kiosk/tools/files/files_tool.h"
 #include "kiosk/tools/mesh_operations/mesh_operations_tool.h"
 #include "kiosk/tools/parts/parts_tool.h"
@@ -34,6 +35,7 @@ const std::vector<ListedTool>& listed_tools() {
       {tools::selection::keys(), make<tools::selection::SelectionTool>},
       {tools::shaping::keys(), make<tools::shaping::ShapingTool>},
       {tools::quality::keys(), make<tools::quality::QualityTool>},
+      {tools::contact::keys(), make<tools::contact::ContactTool>},
       {tools::mesh_operations::keys(), make<tools::mesh_operations::MeshOperationsTool>},
       {tools::parts::keys(), make<tools::parts::PartsTool>},
       {tools::view::keys(), make<tools::view::ViewTool>},

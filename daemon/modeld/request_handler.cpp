@@ -4,6 +4,7 @@
 #include <span>
 #include <utility>
 
+#include "daemon/modeld/contacts_answer.h"
 #include "daemon/modeld/edit_preview.h"
 #include "ipc/wire/failure.h"
 #include "mesh/document/deck_relations.h"
@@ -43,6 +44,7 @@ void RequestHandler::show(const std::string& made_by, Outcome& outcome) {
 }
 
 Outcome RequestHandler::opened() {
+  contact_ = {};
   Outcome outcome;
   show(keeper_.document().current().made_by, outcome);
   outcome.events.insert(outcome.events.begin(), ipc::DocumentOpened{keeper_.document().path.string()});
@@ -126,6 +128,16 @@ Outcome RequestHandler::field(const ipc::GetField& request, const Progress& prog
   return outcome;
 }
 
+Outcome RequestHandler::contacts(const ipc::GetContacts& request, const Progress& progress) {
+  if (!keeper_.is_open()) return {ipc::failed_from({"", 0, "no document is open"}), {}, {}, {}};
+  const mesh::document::Generation& current = keeper_.document().current();
+  const auto tell = [&](double fraction) { return fraction <= 0 || progress(fraction); };
+  const Result<mesh::document::Contacts> found =
+      mesh::document::find_contacts(current, contact_, {request.select, request.gap, request.thickness}, tell);
+  if (!found) return {ipc::failed_from(found.error()), {}, {}, {}};
+  return {contacts_answer(current.number, *found), {}, {}, {}};
+}
+
 Outcome RequestHandler::save(const ipc::Save& request, const Progress& progress) {
   if (request.asks && request.path) {
     Result<std::optional<ipc::SaveWould>> would = keeper_.would(*request.path);
@@ -147,6 +159,7 @@ Outcome RequestHandler::close(const ipc::Close& request) {
   const bool blocked = keeper_.is_blocked(request);
   if (const Result<void> done = keeper_.close(request.discard, request.keep); !done) return failed_by_edits(done.error(), blocked);
   publisher_.forget();
+  contact_ = {};
   Outcome outcome;
   outcome.events.emplace_back(ipc::DocumentClosed{});
   outcome.published = PublishedState{};
@@ -155,7 +168,7 @@ Outcome RequestHandler::close(const ipc::Close& request) {
 
 Outcome RequestHandler::begin_drag(std::uint64_t number, const mesh::document::Edit& edit) {
   if (!keeper_.is_open()) return {ipc::failed_from({"", 0, "no document is open"}), {}, {}, {}};
-  Result<DragSession> drag = DragSession::begin(number, keeper_.document(), edit);
+  Result<DragSession> drag = DragSession::begin(number, keeper_.document(), edit, contact_);
   if (!drag) return {ipc::failed_from(drag.error()), {}, {}, {}};
   Result<ipc::Descriptor> preview = drag->preview().duplicate();
   if (!preview) return {ipc::failed_from(preview.error()), {}, {}, {}};

@@ -13,6 +13,7 @@
 #include "daemon/modeld/field_maker.h"
 #include "ipc/model/messages.h"
 #include "ipc/model/snapshot_publisher.h"
+#include "mesh/document/contacts.h"
 
 namespace prismesh::modeld {
 
@@ -47,6 +48,8 @@ class RequestHandler {
   Outcome followed_edges(const ipc::FindFollowedEdges& request) const;
   /// Makes a field that views colour by. A deck to compare with is read here and kept for the next request.
   Outcome field(const ipc::GetField& request, const Progress& progress);
+  /// Finds where shells cross or are too close.
+  Outcome contacts(const ipc::GetContacts& request, const Progress& progress);
   /// A cancel before the first file is replaced leaves all files as they were; a later one is ignored.
   Outcome save(const ipc::Save& request, const Progress& progress = {});
   Outcome close(const ipc::Close& request);
@@ -65,6 +68,7 @@ class RequestHandler {
 
   DocumentKeeper keeper_;
   FieldMaker fields_;
+  mesh::document::ContactSearch contact_;  ///< of the open document
   ipc::SnapshotPublisher& publisher_;
   Clock& clock_;  ///< measures how long edits take
   std::optional<DragSession> drag_;

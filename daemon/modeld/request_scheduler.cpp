@@ -254,6 +254,9 @@ void RequestScheduler::begin(Waiting next) {
   else if (auto* field = std::get_if<ipc::GetField>(&next.request))
     run_long(next, "Comparing", OnDeath::stops,
              [this, request = std::move(*field)](const Progress& progress) { return handler_.field(request, progress); });
+  else if (auto* contacts = std::get_if<ipc::GetContacts>(&next.request))
+    run_long(next, "Looking for contact", OnDeath::stops,
+             [this, request = std::move(*contacts)](const Progress& progress) { return handler_.contacts(request, progress); });
   else if (auto* save = std::get_if<ipc::Save>(&next.request))
     run_long(next, "Saving", OnDeath::goes_on,
              [this, request = std::move(*save)](const Progress& progress) { return handler_.save(request, progress); });

@@ -84,6 +84,12 @@ struct GetField {
   std::optional<std::uint64_t> against_generation;  ///< replaces `against`
   std::string from, to;                             ///< of "distance": expressions
 };
+/// Asks where shells cross or are too close (mesh/document/contacts.h). Costs a search of the whole model.
+struct GetContacts {
+  std::optional<std::string> select;  ///< an expression: only where one of its shells takes part; absent: everywhere
+  double gap = 0;                     ///< how far faces must be apart, deck's length unit
+  std::optional<double> thickness;    ///< of all shells; absent: that of elements and sections
+};
 /// The camera of a view, for views that move together. In screen millimetres and deck coordinates, as in kiosk/stereo/view.h.
 struct Camera {
   std::array<double, 3> pivot{};
@@ -118,9 +124,9 @@ struct FollowPen {                         ///< descriptor: the state page of th
 };
 struct LeavePen {};
 
-using Request =
-    std::variant<Hello, Open, Save, Close, ApplyEdit, BeginDrag, DragStep, CommitDrag, CancelDrag, Cancel, Count, GetQuality, FindShells,
-                 PreviewEdit, FindFollowedEdges, GetField, ShareCamera, GetState, GetSnapshot, ReturnSnapshot, FollowPen, LeavePen>;
+using Request = std::variant<Hello, Open, Save, Close, ApplyEdit, BeginDrag, DragStep, CommitDrag, CancelDrag, Cancel, Count, GetQuality,
+                             FindShells, PreviewEdit, FindFollowedEdges, GetField, GetContacts, ShareCamera, GetState, GetSnapshot,
+                             ReturnSnapshot, FollowPen, LeavePen>;
 
 // --- answers (Failed and Done: ipc/wire/answers.h) ---
 struct Welcome {
@@ -219,6 +225,43 @@ struct FieldMade {          ///< descriptor: the values (ipc/model/field_page.h)
   std::uint64_t new_nodes = 0;       ///< have a value, but aren't in the figures (mesh/document/field.h)
   std::uint64_t shells_without = 0;  ///< existing shells without a value
 };
+/// A node that must move, and where to.
+struct ContactVector {
+  std::uint32_t node = 0;  ///< index into the generation's nodes
+  std::array<double, 3> to{};
+};
+/// A region in which shells cross or are too close: mesh::document::ContactRegion. Lists are cut as kMaxContacts says.
+struct ContactRegion {
+  std::string kind;            ///< "perforation", "penetration" or "clearance"
+  std::string a, b;            ///< "part:1"; empty: shells without a part
+  std::string name_a, name_b;  ///< of the parts
+  std::uint64_t shells_a = 0, shells_b = 0;
+  double length = 0;                ///< of the curve along which they cross; else 0
+  std::optional<double> max_depth;  ///< absent: half through
+  double mean_depth = 0;
+  double area = 0;
+  std::array<double, 3> at{};
+  std::string worst_a, worst_b;  ///< "shell:7"
+  bool joined = false;
+  std::string contact;  ///< the deck's contact that sees the region; empty: not known
+  std::string why;      ///< why it can't be separated; empty: it can
+  std::string thickness_from;
+  std::vector<std::uint32_t> shells;         ///< of both sides, as indices into the generation's shells
+  std::vector<std::array<double, 6>> curve;  ///< segments along which they cross: both ends
+  std::vector<ContactVector> vectors;
+};
+struct Contacts {
+  std::uint64_t generation = 0;
+  std::uint64_t perforations = 0, penetrations = 0, clearances = 0;  ///< without the limit
+  std::vector<ContactRegion> regions;                                ///< perforations, then the others; of each the worst first
+  std::vector<std::int64_t> without_thickness;                       ///< ids of parts, ascending
+};
+/// Of one answer. What is beyond them is left out from the end, so that the worst regions are whole.
+struct ContactLimits {
+  std::size_t regions = 300;
+  std::size_t shells = 20'000, segments = 10'000, vectors = 10'000;  ///< of all regions together
+};
+inline constexpr ContactLimits kMaxContacts;
 struct DragBegun {  ///< descriptor: the preview
   std::uint64_t drag = 0;
   std::uint64_t base_generation = 0;
@@ -235,7 +278,7 @@ struct Snapshot {  ///< descriptors: the table, then the segments listed in new_
 };
 struct PenFollowed {};  ///< descriptor: the page with the fields (ipc/pen/haptic_field_page.h)
 using Answer = std::variant<Failed, Done, Welcome, DocumentState, Saved, SaveWould, Edited, Counted, Quality, ShellsFound, EditPreviewed,
-                            FollowedEdges, DragBegun, Snapshot, FieldMade, PenFollowed>;
+                            FollowedEdges, DragBegun, Snapshot, FieldMade, Contacts, PenFollowed>;
 
 // --- events; sent to every client ---
 struct GenerationPublished {

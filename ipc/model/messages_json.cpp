@@ -28,6 +28,16 @@ PRISMESH_MESSAGE(ipc::FindFollowedEdges, "find_followed_edges", f("edit", m.edit
 PRISMESH_MESSAGE(ipc::GetState, "get_state", );
 PRISMESH_MESSAGE(ipc::GetField, "get_field", f("field", m.field), f("generation", m.generation), f("against", m.against),
                  f("against_generation", m.against_generation), f("from", m.from), f("to", m.to));
+PRISMESH_MESSAGE(ipc::GetContacts, "get_contacts", f("select", m.select), f("gap", m.gap), f("thickness", m.thickness));
+PRISMESH_JSON_OBJECT(ipc::ContactVector, f("node", m.node), f("to", m.to));
+PRISMESH_JSON_OBJECT(ipc::ContactRegion, f("kind", m.kind), f("a", m.a), f("b", m.b), f("name_a", m.name_a), f("name_b", m.name_b),
+                     f("shells_a", m.shells_a), f("shells_b", m.shells_b), f("length", m.length), f("max_depth", m.max_depth),
+                     f("mean_depth", m.mean_depth), f("area", m.area), f("at", m.at), f("worst_a", m.worst_a), f("worst_b", m.worst_b),
+                     f("joined", m.joined), f("contact", m.contact), f("why", m.why), f("thickness_from", m.thickness_from),
+                     f("shells", m.shells), f("curve", m.curve), f("vectors", m.vectors));
+PRISMESH_MESSAGE(ipc::Contacts, "contacts", f("generation", m.generation), f("perforations", m.perforations),
+                 f("penetrations", m.penetrations), f("clearances", m.clearances), f("regions", m.regions),
+                 f("without_thickness", m.without_thickness));
 PRISMESH_JSON_OBJECT(ipc::Camera, f("pivot", m.pivot), f("rotation", m.rotation), f("mm_per_unit", m.mm_per_unit),
                      f("stands_mm", m.stands_mm));
 PRISMESH_MESSAGE(ipc::ShareCamera, "share_camera", f("camera", m.camera));

@@ -26,9 +26,10 @@ Role needed(const DragStep&) { return Role::edit; }
 Role needed(const CommitDrag&) { return Role::edit; }
 Role needed(const CancelDrag&) { return Role::edit; }
 Role needed(const Cancel&) { return Role::edit; }
-// These change nothing, but may keep the worker for as long as the edit itself.
+// These change nothing, but may keep the worker for as long as an edit.
 Role needed(const PreviewEdit&) { return Role::edit; }
 Role needed(const FindFollowedEdges&) { return Role::edit; }
+Role needed(const GetContacts&) { return Role::edit; }
 // This turns the pictures of others.
 Role needed(const ShareCamera&) { return Role::edit; }
 // Whoever hands the field on to the pen's process needs this role there. The document stays as it is.

@@ -16,7 +16,8 @@ constexpr std::int64_t kMaxBackOff = 2000 * kMillisecond;
 /// Whether the server tells how far it is with it, and can be asked to stop.
 bool can_be_stopped(const ipc::Request& request) {
   return std::holds_alternative<ipc::Open>(request) || std::holds_alternative<ipc::Save>(request) ||
-         std::holds_alternative<ipc::ApplyEdit>(request) || std::holds_alternative<ipc::GetField>(request);
+         std::holds_alternative<ipc::ApplyEdit>(request) || std::holds_alternative<ipc::GetField>(request) ||
+         std::holds_alternative<ipc::GetContacts>(request);
 }
 
 }  // namespace

@@ -45,14 +45,6 @@ double measure_typical_side(const ModelTable& table) {
 
 }  // namespace
 
-Result<void> LineSet::upload(const std::vector<NodePair>& lines, const char* what) {
-  count = 0;
-  if (const auto reserved = texture.reserve(lines.size(), what); !reserved) return fail(reserved.error());
-  texture.upload(std::as_bytes(std::span(lines)));
-  count = lines.size();
-  return {};
-}
-
 ModelLayer::ModelLayer() {
   make_glyph_instances(model_glyphs_.instances);
   make_glyph_instances(preview_glyphs_.instances);
@@ -67,6 +59,7 @@ Result<void> ModelLayer::set_model(std::shared_ptr<const ModelSource> source) {
   if (!source) {
     table_.reset();
     visible_nodes_.reset();
+    contact_.clear();
     end_preview();
     return {};
   }
@@ -81,7 +74,12 @@ Result<void> ModelLayer::set_model(std::shared_ptr<const ModelSource> source) {
   forget_visible_nodes();
   chunks_uploaded_ += changes->uploaded;
   typical_side_ = measure_typical_side(*table_);
-  if (changes->topology) end_preview();  // its indices refer to the old mesh
+  if (changes->topology) {  // their indices refer to the old mesh
+    end_preview();
+    contact_.clear();
+  } else if (changes->visibility) {
+    if (const auto done = contact_.update(*table_); !done) return done;
+  }
   if (changes->topology || changes->visibility || !changes->moved_chunks.empty()) {
     outline_.update(*table_, changes->topology, changes->visibility, changes->moved_chunks);
     if (const auto done = borders_.upload(outline_.borders(), "free edges"); !done) return done;
@@ -134,6 +132,7 @@ Result<void> ModelLayer::update_preview(const ipc::PreviewFrame& frame) {
   preview_glyphs_.stale = true;
   if (first) model_glyphs_.stale = true;  // the model's glyphs must leave out the preview's shells
   if (const auto done = upload_preview_positions(); !done) return done;
+  if (const auto done = contact_.set_touching(*table_, *preview_, frame.touches.others); !done) return done;
   return first ? preview_edges_.upload(preview_->edges(), "moving edges") : Result<void>();
 }
 
@@ -156,6 +155,13 @@ Result<void> ModelLayer::show_change(const MeshChange& change) {
 void ModelLayer::end_preview() {
   if (preview_) model_glyphs_.stale = preview_glyphs_.stale = true;
   preview_.reset();
+  contact_.end_touching();
+}
+
+Result<void> ModelLayer::set_contact(ContactPicture picture) {
+  if (table_) return contact_.set(*table_, textures_.origin(), std::move(picture));
+  contact_.clear();
+  return {};
 }
 
 Result<void> ModelLayer::choose_preview_glyphs(std::size_t cap) {
@@ -237,7 +243,8 @@ Result<ModelLayer::ShadowCaster> ModelLayer::shadow_caster() {
 }
 
 std::size_t ModelLayer::bytes_uploaded() const {
-  std::size_t bytes = model_glyphs_.instances.bytes_uploaded + preview_glyphs_.instances.bytes_uploaded + marked_.bytes_uploaded;
+  std::size_t bytes = model_glyphs_.instances.bytes_uploaded + preview_glyphs_.instances.bytes_uploaded + marked_.bytes_uploaded +
+                      contact_.bytes_uploaded();
   for (const RowTexture* texture : {&textures_.positions(), &textures_.connectivity(), &textures_.surface(), &borders_.texture,
                                     &creases_.texture, &line_elements_.texture, &selected_.texture(), &preview_positions_,
                                     &preview_casting_.connectivity, &selection_casting_.connectivity, &preview_edges_.texture})

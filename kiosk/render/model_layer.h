@@ -5,7 +5,9 @@
 #include <optional>
 #include <vector>
 
+#include "kiosk/render/contact_marks.h"
 #include "kiosk/render/glyphs.h"
+#include "kiosk/render/line_set.h"
 #include "kiosk/render/model_textures.h"
 #include "kiosk/render/outline.h"
 #include "kiosk/render/part_looks.h"
@@ -13,14 +15,6 @@
 #include "kiosk/render/selection_rows.h"
 
 namespace prismesh::kiosk::render {
-
-/// Lines as a texture of node pairs.
-struct LineSet {
-  RowTexture texture{kTwoIndices};
-  std::size_t count = 0;
-  /// Replaces the lines. `what` names them in errors. Errors: too large for the GPU, no graphics memory.
-  Result<void> upload(const std::vector<NodePair>& lines, const char* what);
-};
 
 /// Instances for one draw call.
 struct Instances {
@@ -55,6 +49,10 @@ class ModelLayer {
   /// Shows the result of an edit as a preview. Errors: no graphics memory.
   Result<void> show_change(const MeshChange& change);
   void end_preview();
+  /// Marks where shells touch, until the next call or until the model's shells or nodes are others. Errors: too large for the GPU, no
+  /// graphics memory.
+  Result<void> set_contact(ContactPicture picture);
+  const ContactMarks& contact() const { return contact_; }
   bool previewing() const { return preview_ && preview_->any_frame(); }
   const RowTexture& preview_positions() const { return preview_positions_; }
   const LineSet& preview_edges() const { return preview_edges_; }
@@ -131,6 +129,7 @@ class ModelLayer {
   GlyphBatch model_glyphs_, preview_glyphs_;
   std::size_t glyph_cap_ = 0;
   bool glyphs_of_damage_ = false;
+  ContactMarks contact_;
   PartLooks part_looks_;
   bool part_looks_stale_ = true, part_looks_of_damage_ = false;
   Instances marked_;

@@ -29,6 +29,9 @@ inline const Colour kActiveColour{0.22F, 0.72F, 0.36F};
 inline const Colour kWarnColour{0.98F, 0.83F, 0.10F};
 inline const Colour kFailColour{0.88F, 0.14F, 0.12F};
 inline const Colour kInformationColour{0.36F, 0.66F, 0.98F};
+/// The stripes on shells that touch: far apart in lightness, so that they show without colours, too.
+inline const Colour kAlertBright{1.0F, 0.86F, 0.16F};
+inline const Colour kAlertDark{0.07F, 0.07F, 0.09F};
 inline const Colour kBorderColour{0.10F, 0.11F, 0.13F};
 inline const Colour kCreaseColour{0.16F, 0.17F, 0.19F};
 inline const Colour kLineElementColour{0.20F, 0.22F, 0.27F};

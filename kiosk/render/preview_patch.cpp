@@ -90,6 +90,7 @@ bool PreviewPatch::update(const ipc::PreviewFrame& frame) {
   for (std::size_t i = 0; i < node_count_; ++i)
     if (local_of_moving_[i] != kNoIndex) positions_[local_of_moving_[i]] = texel(frame.positions[i] - origin_);
   states_ = frame.states;
+  touches_ = frame.touches;
   any_frame_ = true;
   return true;
 }
@@ -97,6 +98,13 @@ bool PreviewPatch::update(const ipc::PreviewFrame& frame) {
 std::vector<std::array<std::uint32_t, 4>> PreviewPatch::corners() const {
   std::vector<std::array<std::uint32_t, 4>> corners;
   for (const Shell& shell : shells_) corners.push_back(shell.corner);
+  return corners;
+}
+
+std::vector<std::array<std::uint32_t, 4>> PreviewPatch::touching_corners() const {
+  std::vector<std::array<std::uint32_t, 4>> corners;
+  for (const Shell& shell : shells_)
+    if (touches_.touches(shell.state)) corners.push_back(shell.corner);
   return corners;
 }
 

@@ -30,6 +30,8 @@ class PreviewPatch {
   const std::vector<NodePair>& edges() const { return edges_; }                      ///< into positions()
   const std::unordered_set<std::uint32_t>& shells() const { return touched_; }
   std::vector<std::array<std::uint32_t, 4>> corners() const;  ///< of the visible shells, into positions()
+  /// Of the visible shells that touch others in the newest frame, into positions().
+  std::vector<std::array<std::uint32_t, 4>> touching_corners() const;
   /// Glyphs of the newest frame, warnings first. Their shells are indices into corners(). `damaged`: only those that the shells didn't have
   /// when the deck was opened.
   std::vector<Glyph> glyphs(bool damaged = false) const;
@@ -54,6 +56,7 @@ class PreviewPatch {
   std::vector<Shell> shells_;
   std::unordered_set<std::uint32_t> touched_;
   std::vector<mesh::quality::ShellState> states_;
+  ipc::PreviewTouches touches_;
   bool any_frame_ = false;
 };
 

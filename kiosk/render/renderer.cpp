@@ -159,6 +159,11 @@ void Renderer::begin_preview(std::span<const mesh::NodeIndex> nodes, std::span<c
   impl_->layer.begin_preview(nodes, shells);
 }
 
+Result<void> Renderer::set_contact(ContactPicture picture) {
+  ++impl_->scene_version;
+  return impl_->layer.set_contact(std::move(picture));
+}
+
 Result<void> Renderer::update_preview(const ipc::PreviewFrame& frame) {
   ++impl_->scene_version;
   return impl_->layer.update_preview(frame);

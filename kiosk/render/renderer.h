@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "ipc/model/preview.h"
+#include "kiosk/render/contact_picture.h"
 #include "kiosk/render/mesh_change.h"
 #include "kiosk/render/model_source.h"
 #include "kiosk/render/picture.h"
@@ -50,6 +51,9 @@ class Renderer {
   /// Sets the values that colour a view, one for each of its nodes or shells; empty: no colours. Uploads only the rows that changed.
   /// Errors: no graphics memory.
   Result<void> set_field(Pane pane, std::span<const float> values, bool on_nodes);
+
+  /// Marks where shells of the model touch; an empty picture: nowhere. Errors: too large for the GPU, no graphics memory.
+  Result<void> set_contact(ContactPicture picture);
 
   /// Starts a drag's preview over the model: nodes that move and shells they touch, as in PreviewReader. Nothing is drawn until the first
   /// frame.

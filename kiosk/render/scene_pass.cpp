@@ -15,6 +15,9 @@ constexpr float kCreaseHalfWidth = 0.7F;
 constexpr float kLineElementHalfWidth = 0.9F;
 constexpr float kCrowdedLineAlpha = 0.35F;  ///< of line elements a few pixels long
 constexpr float kPreviewHalfWidth = 0.65F;
+constexpr float kCrossingHalfWidth = 2.0F;
+constexpr float kWayOutHalfWidth = 0.9F;
+constexpr float kHemWidth = 1.1F;
 /// A shell with a smaller radius on the screen is enlarged to this one for its glyph.
 constexpr RadiusLimits kGlyphRadius{9.0F, 5.0F, 0.7F};
 constexpr double kLinesTowardEye = 1.3;  ///< pixels: depth offset of lines from the surface they lie on
@@ -22,7 +25,7 @@ constexpr double kLinesTowardEye = 1.3;  ///< pixels: depth offset of lines from
 }  // namespace
 
 ScenePass::ScenePass(const Shaders& shaders)
-    : shaders_(shaders), no_attributes_(gl::VertexArray::make()), nodes_(shaders), handle_(shaders), shadows_(shaders) {}
+    : shaders_(shaders), no_attributes_(gl::VertexArray::make()), nodes_(shaders), handle_(shaders), shadows_(shaders), contact_(shaders) {}
 
 Result<void> ScenePass::prepare(const Picture& picture, ModelLayer& model) {
   if (picture.colour == ColourMode::part_states)
@@ -77,10 +80,13 @@ void ScenePass::draw(const Picture& picture, const ViewContent& content, const E
     model.textures().surface().bind(unit::kSurface);
     draw_shells(picture, content, frame);
     if (picture.shadows) shadows_.draw(model, frame);
+    contact_.draw(model, frame);
     model.textures().positions().bind(unit::kPositions);
     draw_model_lines(picture, model, frame);
     if (model.previewing()) draw_preview(model, frame);
+    draw_contact_lines(model, frame);
     model.textures().positions().bind(unit::kPositions);
+    model.textures().connectivity().bind(unit::kConnectivity);
     if (picture.selected_nodes) nodes_.draw(model, frame);
     if (picture.quality_glyphs || picture.marked) draw_glyphs(picture, model, glyph_cap, frame);
   }
@@ -198,6 +204,26 @@ void ScenePass::draw_model_lines(const Picture& picture, const ModelLayer& model
   }
   glDepthMask(GL_TRUE);
   draw_lines(model.line_elements(), positions, {kLineElementHalfWidth, ink(kLineElementColour, 1.0F), kCrowdedLineAlpha}, frame);
+}
+
+/// A light line in a dark hem shows on the stripes and on any part; what hides it makes it fainter.
+void ScenePass::draw_contact_lines(const ModelLayer& model, const Frame& frame) const {
+  const ContactMarks& marks = model.contact();
+  if (marks.curve().count + marks.vectors().count == 0) return;
+  blend_by_alpha();
+  glDepthMask(GL_FALSE);
+  const auto draw_hemmed = [&](const LineSet& lines, float half_width, const Colour& colour, float alpha) {
+    draw_lines(lines, marks.line_positions(), {half_width + kHemWidth, ink(kBorderColour, alpha)}, frame);
+    draw_lines(lines, marks.line_positions(), {half_width, ink(colour, alpha)}, frame);
+  };
+  for (const bool hidden : {true, false}) {
+    glDepthFunc(hidden ? GL_GREATER : GL_LEQUAL);
+    const float alpha = hidden ? 0.45F : 1.0F;
+    draw_hemmed(marks.vectors(), kWayOutHalfWidth, kInformationColour, alpha);
+    draw_hemmed(marks.curve(), kCrossingHalfWidth, kFailColour, alpha);
+  }
+  glDepthFunc(GL_LEQUAL);
+  glDepthMask(GL_TRUE);
 }
 
 void ScenePass::draw_preview(const ModelLayer& model, const Frame& frame) const {

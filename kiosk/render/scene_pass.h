@@ -1,6 +1,7 @@
 // Draws one eye's image of the model with its lines, selected nodes, glyphs, shadows and handle.
 #pragma once
 
+#include "kiosk/render/contact_pass.h"
 #include "kiosk/render/frame.h"
 #include "kiosk/render/handle_pass.h"
 #include "kiosk/render/node_pass.h"
@@ -42,6 +43,7 @@ class ScenePass {
   void draw_shells(const Picture& picture, const ViewContent& content, const Frame& frame) const;
   void draw_lines(const LineSet& lines, const RowTexture& positions, const LineStyle& style, const Frame& frame) const;
   void draw_model_lines(const Picture& picture, const ModelLayer& model, const Frame& frame) const;
+  void draw_contact_lines(const ModelLayer& model, const Frame& frame) const;
   void draw_preview(const ModelLayer& model, const Frame& frame) const;
   void draw_glyphs(const Picture& picture, ModelLayer& model, std::size_t cap, const Frame& frame) const;
   void draw_chunks(const ModelLayer& model, const Eigen::Matrix4d& clip_from_deck) const;
@@ -51,6 +53,7 @@ class ScenePass {
   NodePass nodes_;
   HandlePass handle_;
   ShadowPass shadows_;
+  ContactPass contact_;
 };
 
 }  // namespace prismesh::kiosk::render

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "kiosk/render/contact_shaders.h"
 #include "kiosk/render/editing_shaders.h"
 #include "kiosk/render/glyph_shaders.h"
 
@@ -266,6 +267,7 @@ Result<Shaders> Shaders::link() {
       {&Shaders::nodes, "nodes", pull + kNodeVertex, head + kNodeFragment},
       {&Shaders::flat_nodes, "flat nodes", pull + flat + kNodeVertex, head + flat + kNodeFragment},
       {&Shaders::glyphs, "glyphs", pull + kSquareCorner + kGlyphVertex, head + kGlyphFragment},
+      {&Shaders::alert, "alert", shell + kAlertVertex, head + kAlertFragment},
       {&Shaders::handle, "handle", head + kHandleVertex, head + kHandleFragment},
       {&Shaders::pane, "pane", head + kPaneVertex, head + kPaneFragment},
       {&Shaders::rectangle, "rectangle", cover_vertex_shader(), head + kRectangleFragment},

@@ -40,6 +40,7 @@ struct Shaders {
   gl::Program rectangle;
   gl::Program screen_lines;   ///< lines in the screen's plane
   gl::Program shadow_caster;  ///< shells projected onto a plane
+  gl::Program alert;          ///< the texture on shells that touch: six vertices a shell, read from textures
   gl::Program shadow_plane;   ///< six vertices: the plane with its shadow
 
   static Result<Shaders> link();

@@ -11,6 +11,7 @@
 #include <Eigen/Geometry>
 
 #include "base/parallel_for.h"
+#include "mesh/contact/close_shells.h"
 #include "mesh/contact/pair_regions.h"
 #include "mesh/contact/shell_area.h"
 #include "mesh/contact/sort_unique.h"
@@ -156,8 +157,9 @@ void finish(const Model& model, const ContactThickness& thickness, double gap, P
 }  // namespace
 
 std::vector<Penetration> find_penetrations(const Model& model, const spatial::BoxTree& tree, const ContactThickness& thickness,
-                                           const std::vector<ShellCrossing>& crossings, const PenetrationWish& wish) {
-  Pairs pairs = find_close_shells(model, tree, thickness, wish.gap, wish.among);
+                                           const std::vector<ShellCrossing>& crossings, const PenetrationWish& wish,
+                                           const Progress& progress) {
+  Pairs pairs = find_close_shells(model, tree, thickness, wish.gap, wish.among, progress);
   leave_out_crossings(pairs, crossings);
   leave_out_junctions(model, pairs);
   std::vector<Penetration> found = group(model, pairs, crossings, wish.selected);

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "mesh/contact/contact_thickness.h"
 #include "mesh/contact/penetrations.h"
 #include "mesh/contact/shell_crossings.h"
 #include "mesh/model/node_set.h"
@@ -19,8 +20,10 @@ struct PenetrationWish {
 /// Returns the regions, the deepest first, then by parts and shells; on all cores, the same whatever their number. Pairs are those of
 /// find_close_shells, regions those of group_crossings. Left out, with the neighbours they are grown over: regions with shells of
 /// `crossings`, which are perforations; and shells that stand on others (planes that differ by more than 30 degrees) about a free edge that
-/// touches: T-junctions. Preconditions: those of find_close_shells; the crossings are all of the model, ascending.
+/// touches: T-junctions. `progress` is asked after some 65,000 shells; stopped, it returns nothing. Preconditions: those of
+/// find_close_shells; the crossings are all of the model, ascending.
 std::vector<Penetration> find_penetrations(const Model& model, const spatial::BoxTree& tree, const ContactThickness& thickness,
-                                           const std::vector<ShellCrossing>& crossings, const PenetrationWish& wish = {});
+                                           const std::vector<ShellCrossing>& crossings, const PenetrationWish& wish = {},
+                                           const Progress& progress = {});
 
 }  // namespace prismesh::mesh::contact

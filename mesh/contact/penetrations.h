@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "mesh/contact/close_shells.h"
+#include "mesh/contact/closeness.h"
 #include "mesh/model/model.h"
 #include "mesh/model/node_set.h"
 

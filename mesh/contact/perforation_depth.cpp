@@ -57,9 +57,11 @@ double thickness_at(const Model& model, NodeIndex node) {
 
 void measure(const Model& model, const spatial::ShellTree& other, double thickness_share, PerforationDepth& depth) {
   std::vector<double> of_node(depth.entering.size(), -1);
+  depth.nearest.resize(of_node.size());
   parallel_for(of_node.size(), kDepthGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const auto closest = other.closest(model.position(depth.entering[i]));
+      depth.nearest[i] = closest ? closest->point : model.position(depth.entering[i]);
       if (!closest) continue;
       const double thicknesses = thickness_at(model, depth.entering[i]) + quality::thickness_of(model, closest->shell.value);
       of_node[i] = closest->distance + thickness_share * thicknesses;

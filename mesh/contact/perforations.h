@@ -25,6 +25,7 @@ struct PerforationDepth {
   NodeSet entering;           ///< nodes of the piece that the curve cuts off, ascending; empty: half through
   std::optional<double> max;  ///< the greatest distance of such a node from the other side; nothing: half through
   double mean = 0;            ///< over those nodes
+  std::vector<Vec3> nearest;  ///< of each entering node the other side's nearest point; the node itself where there is none
   NodeIndex deepest;          ///< where the max is; of equal ones the first
 };
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "base/parallel_for.h"
+#include "mesh/contact/in_batches.h"
 #include "mesh/contact/orientation.h"
 #include "mesh/contact/shares_node.h"
 #include "mesh/contact/shell_triangles.h"
@@ -112,7 +112,9 @@ void add_crossing(const Model& model, ShellIndex a, const ShellTriangle& of_a, S
   add_shared_sides(model, facing_a, facing_b, segments);
 }
 
-std::vector<CurveSegment> segments_of(const Model& model, ShellIndex a, ShellIndex b) {
+}  // namespace
+
+std::vector<CurveSegment> crossing_segments(const Model& model, ShellIndex a, ShellIndex b) {
   std::vector<CurveSegment> segments;
   each_shell_triangle(model, a, [&](const ShellTriangle& of_a) {
     each_shell_triangle(model, b, [&](const ShellTriangle& of_b) { add_crossing(model, a, of_a, b, of_b, segments); });
@@ -120,12 +122,11 @@ std::vector<CurveSegment> segments_of(const Model& model, ShellIndex a, ShellInd
   return segments;
 }
 
-}  // namespace
-
-std::vector<ShellCrossing> find_shell_crossings(const Model& model, const spatial::BoxTree& tree, const ShellSet* among) {
+std::vector<ShellCrossing> find_shell_crossings(const Model& model, const spatial::BoxTree& tree, const ShellSet* among,
+                                                const Progress& progress) {
   const std::size_t count = among != nullptr ? among->size() : model.shell_count();
   std::vector<std::vector<ShellCrossing>> of_range((count + kCrossingGrain - 1) / kCrossingGrain);
-  parallel_for(count, kCrossingGrain, [&](std::size_t begin, std::size_t end) {
+  const bool done = in_batches(count, kCrossingGrain, progress, [&](std::size_t begin, std::size_t end) {
     std::vector<ShellCrossing>& found = of_range[begin / kCrossingGrain];
     for (std::size_t s = begin; s < end; ++s) {
       const ShellIndex a = among != nullptr ? (*among)[s] : ShellIndex(s);
@@ -136,11 +137,13 @@ std::vector<ShellCrossing> find_shell_crossings(const Model& model, const spatia
       tree.near_box(low, high, 0, [&](ShellIndex b, const spatial::FloatBox&) {
         if (!(a < b) || share_a_node(model.shell(a), model.shell(b))) return true;
         if (among != nullptr && !std::binary_search(among->begin(), among->end(), b)) return true;
-        if (std::vector<CurveSegment> segments = segments_of(model, a, b); !segments.empty()) found.push_back({a, b, std::move(segments)});
+        if (std::vector<CurveSegment> segments = crossing_segments(model, a, b); !segments.empty())
+          found.push_back({a, b, std::move(segments)});
         return true;
       });
     }
   });
+  if (!done) return {};
   std::vector<ShellCrossing> all;
   for (auto& some : of_range) std::move(some.begin(), some.end(), std::back_inserter(all));
   std::sort(all.begin(), all.end(),

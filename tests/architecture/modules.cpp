@@ -74,6 +74,7 @@ const std::vector<Module>& modules() {
       {"kiosk/toolkit", {"kiosk/link", "kiosk/panels", "kiosk/render"}},
       {"kiosk/tools/files", {"kiosk/toolkit"}},
       {"kiosk/tools/comparison", {"kiosk/toolkit"}},
+      {"kiosk/tools/contact", {"kiosk/toolkit"}},
       {"kiosk/tools/selection", {"kiosk/toolkit"}},
       {"kiosk/tools/shaping", {"kiosk/toolkit"}},
       {"kiosk/tools/pen", {"kiosk/toolkit", "mesh/field"}},
@@ -83,11 +84,11 @@ const std::vector<Module>& modules() {
       {"kiosk/tools/view", {"kiosk/toolkit"}},
       {"kiosk/calibration", {"kiosk/display", "kiosk/render"}},
       {"kiosk",
-       {"kiosk/tools/files", "kiosk/tools/comparison", "kiosk/tools/selection", "kiosk/tools/shaping", "kiosk/tools/pen",
-        "kiosk/tools/quality", "kiosk/tools/mesh_operations", "kiosk/tools/parts", "kiosk/tools/view", "kiosk/calibration",
-        "kiosk/display/kms", "kiosk/display/x11", "drivers/settings"}},
+       {"kiosk/tools/files", "kiosk/tools/comparison", "kiosk/tools/contact", "kiosk/tools/selection", "kiosk/tools/shaping",
+        "kiosk/tools/pen", "kiosk/tools/quality", "kiosk/tools/mesh_operations", "kiosk/tools/parts", "kiosk/tools/view",
+        "kiosk/calibration", "kiosk/display/kms", "kiosk/display/x11", "drivers/settings"}},
 
-      {"cli", {"ipc/device", "ipc/model", "ipc/pen", "drivers/settings", "mesh/contact"}},
+      {"cli", {"ipc/device", "ipc/model", "ipc/pen", "drivers/settings"}},
   };
   return kModules;
 }

@@ -1,12 +1,15 @@
 // Measures the search for crossing shells, and for shells that are too close, in a million shells: one curved sheet, which has none, and
 // two sheets that wave.
+#include <algorithm>
 #include <cmath>
 #include <memory>
+#include <vector>
 
 #include <benchmark/benchmark.h>
 
 #include "mesh/contact/find_penetrations.h"
 #include "mesh/contact/find_perforations.h"
+#include "mesh/contact/moved_shells.h"
 #include "mesh/contact/perforation_depth.h"
 #include "mesh/model/adjacency.h"
 #include "mesh/spatial/box_tree.h"
@@ -84,6 +87,41 @@ BENCHMARK(find_no_penetration_of_thick_shells)->Unit(benchmark::kMillisecond)->U
 /// Two layers, 2 to 18 mm apart.
 void find_penetrations(benchmark::State& state) { search_penetrations(state, with_its_adjacency(two_layers(10)), 3); }
 BENCHMARK(find_penetrations)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+/// A step of a drag of the nodes about the middle of the lower of two layers, 12 to 28 mm apart: up by 19 mm, where most of its shells
+/// touch the upper one, and back. A million shells of 3 mm.
+void step_of_a_drag(benchmark::State& state) {
+  const Model model = with_its_adjacency(two_layers(20));
+  const spatial::BoxTree tree(model);
+  const auto thickness = std::make_shared<const contact::ContactThickness>(contact::given_thickness(model, 3));
+  const auto side = static_cast<std::size_t>(std::sqrt(static_cast<double>(state.range(0))));
+  constexpr std::size_t kStride = 1001;
+  NodeSet nodes;
+  std::vector<Vec3> at[2];
+  for (std::size_t j = 0; j < side; ++j)
+    for (std::size_t i = 0; i < side; ++i) {
+      nodes.emplace_back((250 - side / 2 + j) * kStride + 500 - side / 2 + i);
+      at[0].push_back(model.position(nodes.back()));
+      at[1].push_back(at[0].back() + Vec3(0, 0, 19));
+    }
+  contact::MovedShells moved(model, tree, thickness, nodes, shells_touching(model, nodes));
+  std::size_t step = 0, touches = 0;
+  for ([[maybe_unused]] auto _ : state) touches = std::max(touches, moved.at(at[++step % 2]).size());
+  state.counters["nodes"] = static_cast<double>(nodes.size());
+  state.counters["touches"] = static_cast<double>(touches);
+}
+BENCHMARK(step_of_a_drag)->Arg(100)->Arg(1000)->Arg(10000)->Unit(benchmark::kMillisecond)->UseRealTime();
+/// What the first step of a drag waits for: the tree, the thickness, and what touches before.
+void begin_a_drag(benchmark::State& state) {
+  const Model model = with_its_adjacency(two_layers(20));
+  for ([[maybe_unused]] auto _ : state) {
+    const spatial::BoxTree tree(model);
+    const auto thickness = std::make_shared<const contact::ContactThickness>(contact::section_thickness(model));
+    const NodeSet nodes{NodeIndex(std::size_t{250'000})};
+    benchmark::DoNotOptimize(contact::MovedShells(model, tree, thickness, nodes, shells_touching(model, nodes)));
+  }
+}
+BENCHMARK(begin_a_drag)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 }  // namespace
 }  // namespace prismesh::mesh::bench

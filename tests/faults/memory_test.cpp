@@ -37,6 +37,7 @@ TEST(Memory, where_there_is_none_the_client_is_told_and_the_document_is_whole) {
     const ipc::DocumentState before = state();
     const ipc::Request requests[] = {ipc::GetQuality{"", false},
                                      ipc::GetField{},
+                                     ipc::GetContacts{},
                                      ipc::PreviewEdit{parsed(R"({"edit":"relax","scope":"all"})")},
                                      ipc::ApplyEdit{parsed(R"({"edit":"lift","distance":2,"on":"all"})")},
                                      ipc::ApplyEdit{parsed(R"({"edit":"select","expr":"all"})")},

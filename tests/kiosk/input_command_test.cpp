@@ -71,7 +71,7 @@ TEST(KeysTest, every_command_has_one_row_with_words) {
 TEST(KeysTest, the_commands_of_an_owner_are_numbered_without_gaps) {
   std::map<std::string_view, std::set<int>> numbers;
   for (const KeyBinding& binding : key_bindings()) numbers[binding.command.owner].insert(binding.command.number);
-  EXPECT_EQ(numbers.size(), 10U) << "nine tools and the editor";
+  EXPECT_EQ(numbers.size(), 11U) << "ten tools and the editor";
   for (const auto& [owner, taken] : numbers)
     EXPECT_EQ(*taken.rbegin() + 1, static_cast<int>(taken.size())) << owner << ": a row is missing";
 }
@@ -140,6 +140,10 @@ TEST(KeysTest, rows_keep_the_order_of_help_and_menu) {
                                              "Ctrl+T",
                                              "Ctrl+Shift+T",
                                              "Ctrl+H",
+                                             "Ctrl+K",
+                                             "Ctrl+Right",
+                                             "Ctrl+Left",
+                                             "Ctrl+Shift+K",
                                              "Ctrl+D",
                                              "Ctrl+B",
                                              "Ctrl+M",
@@ -180,7 +184,8 @@ TEST(KeysTest, rows_keep_the_order_of_help_and_menu) {
 }
 
 TEST(KeysTest, what_edits_is_told_from_what_only_looks) {
-  const std::set<std::string_view> looks{"J", "Right", "Left", "Shift+J", "Ctrl+T", "Ctrl+Shift+T", "Ctrl+H"};
+  const std::set<std::string_view> looks{"J",      "Right",  "Left",       "Shift+J",   "Ctrl+T",      "Ctrl+Shift+T",
+                                         "Ctrl+H", "Ctrl+K", "Ctrl+Right", "Ctrl+Left", "Ctrl+Shift+K"};
   for (const KeyBinding& binding : key_bindings()) {
     const bool part_or_mesh = binding.menu == Menu::parts || binding.menu == Menu::mesh;
     if (part_or_mesh) {
@@ -198,7 +203,7 @@ TEST(KeysTest, a_key_held_down_repeats_what_goes_on_in_steps) {
   for (const KeyBinding& binding : key_bindings())
     if (binding.repeats()) repeated.insert(binding.label);
   EXPECT_EQ(repeated, (std::set<std::string_view>{"Ctrl+Z", "Ctrl+Y", "Right", "Left", "G", "B", "Shift+PgUp", "Shift+PgDn", "Ctrl+Up",
-                                                  "Ctrl+Down", "PgUp", "PgDn", "Ctrl+PgUp", "Ctrl+PgDn"}));
+                                                  "Ctrl+Down", "PgUp", "PgDn", "Ctrl+PgUp", "Ctrl+PgDn", "Ctrl+Right", "Ctrl+Left"}));
 }
 
 TEST(KeysTest, a_label_says_which_key_it_is) {

@@ -190,6 +190,7 @@ TEST(ModelLinkTest, whatever_takes_long_can_be_stopped_and_says_so) {
            if (const auto* failed = std::get_if<ipc::Failed>(&answer)) field_answer = failed->message;
          });
        }},
+      {"a search for contact", [&] { link.connection.question(ipc::GetContacts{}, [](const ipc::Answer&) {}); }},
   };
   for (const auto& [name, begin] : works) {
     SCOPED_TRACE(name);

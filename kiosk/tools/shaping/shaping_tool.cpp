@@ -10,6 +10,7 @@
 #include "kiosk/tools/shaping/falloff_direction.h"
 #include "kiosk/tools/shaping/shaping_keys.h"
 #include "kiosk/tools/shaping/shaping_panel.h"
+#include "kiosk/tools/shaping/touch_words.h"
 #include "kiosk/tools/shaping/typed_number.h"
 
 namespace prismesh::kiosk::tools::shaping {
@@ -142,8 +143,15 @@ void ShapingTool::add_to_picture(render::Picture& picture) const {
     picture.followed_edges = lines_of(*edges, *shown, context_.link.drag.running());
 }
 
+/// What the pull comes to touch, as long as its preview is shown.
+std::string ShapingTool::touching() const {
+  const link::RunningDrag* drag = context_.link.drag.running();
+  if (drag == nullptr || !drag->begun() || drag->frame().sequence == 0 || !context_.shown.snapshot) return {};
+  return touch_words(drag->frame().touches, context_.shown.snapshot->info());
+}
+
 std::string ShapingTool::guidance() const {
-  if (!axis_pick_.active()) return {};
+  if (!axis_pick_.active()) return touching();
   return fmt::format("{}: click the {} node, Esc gives up", picks_ == TwoNodes::axis ? "Axis" : "Direction of the falloff",
                      axis_pick_.first() ? "second" : "first");
 }
@@ -159,6 +167,10 @@ void ShapingTool::trace_picture() {
   const auto& shown = context_.shown.snapshot;
   const ipc::FollowedEdges* edges = shown ? followed_.known(shown->info().generation) : nullptr;
   const std::uint64_t followed = edges != nullptr ? edges->edge_count : 0;
+  if (std::string words = touching(); words != traced_touch_) {
+    traced_touch_ = std::move(words);
+    context_.trace.line(traced_touch_.empty() ? "drag touches nothing" : "drag touches: " + traced_touch_);
+  }
   if (followed != traced_followed_) context_.trace.line(fmt::format("followed edges {}", traced_followed_ = followed));
 }
 

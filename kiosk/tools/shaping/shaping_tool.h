@@ -113,6 +113,8 @@ class ShapingTool final : public toolkit::Tool,
   void next_handle();
   void change_option(ShapingCommand command);
 
+  std::string touching() const;
+
   toolkit::ToolContext& context_;
   ShapingOptions options_;
   input::Under handle_ = input::Under::lift_handle;  ///< the part of the handle that numbers are typed for
@@ -128,6 +130,7 @@ class ShapingTool final : public toolkit::Tool,
   panels::EntryState entry_;
   std::string traced_;
   std::uint64_t traced_followed_ = 0;
+  std::string traced_touch_;
 };
 
 }  // namespace prismesh::kiosk::tools::shaping

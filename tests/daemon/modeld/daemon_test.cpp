@@ -240,9 +240,10 @@ TEST_F(Serving, refusals_are_sentences) {
   EXPECT_EQ(one.snapshot().error().message, "no document is open");
   EXPECT_EQ(one.call(ipc::BeginDrag{patch()}, kServingPatience).error().message, "no document is open");
   EXPECT_EQ(one.call(ipc::CommitDrag{7}, kServingPatience).error().message, "you hold no drag 7");
-  for (const ipc::Request& request : {ipc::Request(ipc::Save{}), ipc::Request(ipc::Count{"1", {}}), ipc::Request(ipc::GetQuality{}),
-                                      ipc::Request(ipc::FindShells{}), ipc::Request(ipc::PreviewEdit{move_node(1, 0.25)}),
-                                      ipc::Request(ipc::FindFollowedEdges{move_node(1, 0.25)}), ipc::Request(ipc::GetField{})}) {
+  for (const ipc::Request& request :
+       {ipc::Request(ipc::Save{}), ipc::Request(ipc::Count{"1", {}}), ipc::Request(ipc::GetQuality{}), ipc::Request(ipc::FindShells{}),
+        ipc::Request(ipc::PreviewEdit{move_node(1, 0.25)}), ipc::Request(ipc::FindFollowedEdges{move_node(1, 0.25)}),
+        ipc::Request(ipc::GetField{}), ipc::Request(ipc::GetContacts{})}) {
     const auto refused = one.call(request, kServingPatience);
     ASSERT_FALSE(refused) << request.index();
     EXPECT_EQ(refused.error().message, "no document is open") << request.index();

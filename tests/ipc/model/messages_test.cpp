@@ -46,6 +46,12 @@ TEST(Messages, requests_survive_a_round_trip) {
   EXPECT_NE(refusal(R"({"request": "count", "number": 1, "kind": "nodes"})").find("must be \"node\", \"element\" or \"part\""),
             std::string::npos);
 
+  const auto contacts = decode_request(encode_request(3, GetContacts{"part:7", 0.25, 1.5}).value());
+  ASSERT_TRUE(contacts) << contacts.error().message;
+  EXPECT_EQ(std::get<GetContacts>(contacts->request).select, "part:7");
+  EXPECT_EQ(std::get<GetContacts>(contacts->request).gap, 0.25);
+  EXPECT_EQ(std::get<GetContacts>(contacts->request).thickness, 1.5);
+
   mesh::document::Select select;
   select.expr = "1-100";
   const auto edit = decode_request(encode_request(5, ApplyEdit{select}).value());

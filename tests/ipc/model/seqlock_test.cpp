@@ -161,6 +161,52 @@ TEST(Preview, carries_every_number_of_a_frame) {
   }
 }
 
+TEST(Preview, carries_what_touches) {
+  const std::vector<mesh::NodeIndex> nodes(1);
+  const std::vector<mesh::ShellIndex> shells(130);
+  PreviewWriter writer = PreviewWriter::create(5, 17, nodes, shells).value();
+  const PreviewReader reader = PreviewReader::map(writer.descriptor()).value();
+  const std::vector<mesh::Vec3> at(1, mesh::Vec3::Zero());
+  const std::vector<mesh::quality::ShellState> states(130, {3, 4});
+  PreviewTouches touches;
+  touches.moved = {1, 0, 2};
+  touches.others = {mesh::ShellIndex(7u), mesh::ShellIndex(9u), mesh::ShellIndex(400u)};
+  touches.parts = 2;
+  touches.part_a = mesh::PartIndex(5u);
+  touches.part_b = mesh::PartIndex();
+  touches.depth = 0.8;
+  writer.publish(1, at, states, {}, touches);
+  PreviewFrame frame;
+  ASSERT_TRUE(reader.latest(frame));
+  for (std::size_t s = 0; s < 130; ++s) EXPECT_EQ(frame.touches.touches(s), s == 0 || s == 129) << s;
+  EXPECT_EQ(frame.touches.others, touches.others);
+  EXPECT_EQ(frame.touches.parts, 2u);
+  EXPECT_EQ(frame.touches.part_a, touches.part_a);
+  EXPECT_EQ(frame.touches.part_b, touches.part_b);
+  EXPECT_FALSE(frame.touches.cross);
+  EXPECT_EQ(frame.touches.depth, 0.8);
+  EXPECT_TRUE(frame.touches.watched);
+  EXPECT_EQ(frame.states.back(), states.back());
+
+  touches = {};
+  touches.watched = false;
+  touches.cross = true;
+  touches.moved.assign(99, ~std::uint64_t{0});  // longer than there are shells
+  touches.others.assign(kMaxTouchedOthers + 1, mesh::ShellIndex(3u));
+  writer.publish(2, at, states, {}, touches);
+  ASSERT_TRUE(reader.latest(frame));
+  EXPECT_FALSE(frame.touches.watched);
+  EXPECT_TRUE(frame.touches.cross);
+  EXPECT_EQ(frame.touches.others.size(), kMaxTouchedOthers);
+  EXPECT_EQ(frame.touches.moved.size(), 3u);
+  EXPECT_EQ(frame.states.back(), states.back());
+  writer.publish(3, at, states, {});
+  ASSERT_TRUE(reader.latest(frame));
+  EXPECT_EQ(frame.touches.parts, 0u);
+  for (std::size_t s = 0; s < 130; ++s) EXPECT_FALSE(frame.touches.touches(s)) << "of the frame before";
+  EXPECT_TRUE(frame.touches.others.empty());
+}
+
 TEST(Preview, lists_of_another_length_stay_in_their_places) {
   const std::vector<mesh::NodeIndex> nodes(3);
   const std::vector<mesh::ShellIndex> shells(3);

@@ -1,0 +1,185 @@
+#include "mesh/document/contacts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+#include <utility>
+
+#include "mesh/contact/find_penetrations.h"
+#include "mesh/contact/find_perforations.h"
+#include "mesh/contact/joints_of_parts.h"
+#include "mesh/contact/perforation_depth.h"
+#include "mesh/contact/shell_area.h"
+#include "mesh/document/deck_relations.h"
+#include "mesh/document/joined_sheets.h"
+#include "mesh/select/expression.h"
+
+namespace prismesh::mesh::document {
+
+namespace {
+
+/// Shares of the whole time, as of a million shells of a curved sheet.
+constexpr double kTreeBuilt = 0.2, kCrossingsFound = 0.5;
+
+/// Fills in what regions of both kinds have.
+class RegionWriter {
+ public:
+  RegionWriter(const Generation& generation, const contact::ContactThickness& thickness)
+      : model_(generation.model), thickness_(thickness), joints_(model_, joints(generation)) {}
+
+  ContactRegion perforation(const contact::Perforation& found, const contact::PerforationDepth& depth) const {
+    ContactRegion region = common("perforation", found.part_a, found.part_b, found.shells_a, found.shells_b);
+    region.length = found.length;
+    region.max_depth = depth.max;
+    region.mean_depth = depth.mean;
+    region.area = contact::area_of_smaller(model_, found.shells_a, found.shells_b);
+    region.at = depth.deepest.valid() ? model_.position(depth.deepest) : found.curve.front().from;
+    const auto& [a, b] = found.crossings.front();
+    region.worst_a = shell_name(a), region.worst_b = shell_name(b);
+    region.curve = found.curve;
+    for (std::size_t i = 0; i < depth.nearest.size(); ++i) {
+      const Vec3& to = depth.nearest[i];
+      region.vectors.push_back({depth.entering[i], to, (to - model_.position(depth.entering[i])).norm()});
+    }
+    return region;
+  }
+
+  ContactRegion penetration(const contact::Penetration& found) const {
+    ContactRegion region =
+        common(found.is_clearance ? "clearance" : "penetration", found.part_a, found.part_b, found.shells_a, found.shells_b);
+    region.max_depth = found.max_depth;
+    region.mean_depth = found.mean_depth;
+    region.area = found.area;
+    region.at = (found.worst.on_a + found.worst.on_b) / 2;
+    region.worst_a = shell_name(found.worst.a), region.worst_b = shell_name(found.worst.b);
+    for (const auto* nodes : {&found.nodes_a, &found.nodes_b})
+      for (const contact::WayOut& way : *nodes)
+        region.vectors.push_back({way.node, model_.position(way.node) + way.depth * way.direction, way.depth});
+    return region;
+  }
+
+ private:
+  std::string shell_name(ShellIndex shell) const { return "shell:" + std::to_string(model_.shell_ids[shell.value]); }
+  const Part* part(PartIndex index) const { return index.valid() ? &(*model_.parts)[index.value] : nullptr; }
+
+  ContactRegion common(const char* kind, PartIndex a, PartIndex b, const ShellSet& shells_a, const ShellSet& shells_b) const {
+    ContactRegion region;
+    region.kind = kind;
+    if (const Part* of_a = part(a)) region.a = "part:" + std::to_string(of_a->id), region.name_a = of_a->name;
+    if (const Part* of_b = part(b)) region.b = "part:" + std::to_string(of_b->id), region.name_b = of_b->name;
+    region.shells_a = shells_a;
+    region.shells_b = shells_b;
+    region.why = "whether it can be separated isn't computed: the edit separate tries it";
+    region.joined = joints_.join_there(a, b, shells_a, shells_b, thickness_);
+    const std::string from_a(contact::name(thickness_.from(a))), from_b(contact::name(thickness_.from(b)));
+    region.thickness_from = from_a == from_b ? from_a : from_a + ", " + from_b;
+    return region;
+  }
+
+  const Model& model_;
+  const contact::ContactThickness& thickness_;
+  contact::JointsOfParts joints_;
+};
+
+bool has_any(const ShellSet& shells, const ShellSet& of) {
+  return std::any_of(shells.begin(), shells.end(), [&](ShellIndex shell) { return std::binary_search(of.begin(), of.end(), shell); });
+}
+
+template <class T>
+bool same_chunks(const ChunkedArray<T>& a, const ChunkedArray<T>& b) {
+  if (a.size() != b.size()) return false;
+  for (std::size_t c = 0; c < a.chunk_count(); ++c)
+    if (!a.shares_chunk(b, c)) return false;
+  return true;
+}
+
+/// Tells the listener shares of the whole, and remembers whether it stopped the work.
+class Share {
+ public:
+  explicit Share(const Progress& progress) : progress_(progress) {}
+  Progress from_to(double from, double to) {
+    return [this, from, to](double fraction) {
+      stopped_ = stopped_ || (progress_ && !progress_(from + (to - from) * fraction));
+      return !stopped_;
+    };
+  }
+  bool stopped() const { return stopped_; }
+
+ private:
+  const Progress& progress_;
+  bool stopped_ = false;
+};
+
+}  // namespace
+
+const spatial::BoxTree& ContactSearch::tree(const Model& model) {
+  spatial::BoxTree next;
+  if (tree_) {
+    next = *tree_;  // where there is no memory in the middle, the old one stays
+    next.follow(model);
+  } else {
+    next = spatial::BoxTree(model);
+  }
+  tree_ = std::move(next);
+  return *tree_;
+}
+
+std::shared_ptr<const contact::ContactThickness> ContactSearch::section_thickness(const Model& model) {
+  // Removed shells have no thickness, so the corners count, too.
+  if (!thickness_ || thickness_of_->parts != model.parts || !same_chunks(thickness_of_->shell_thickness, model.shell_thickness) ||
+      !same_chunks(thickness_of_->shell_parts, model.shell_parts) || !same_chunks(thickness_of_->shell_nodes, model.shell_nodes)) {
+    thickness_ = std::make_shared<const contact::ContactThickness>(contact::section_thickness(model));
+    thickness_of_.emplace();
+    thickness_of_->parts = model.parts;
+    thickness_of_->shell_thickness = model.shell_thickness;
+    thickness_of_->shell_parts = model.shell_parts;
+    thickness_of_->shell_nodes = model.shell_nodes;
+  }
+  return thickness_;
+}
+
+Result<Contacts> find_contacts(const Generation& generation, ContactSearch& search, const ContactWish& wish, const Progress& progress) {
+  if (!std::isfinite(wish.gap) || wish.gap < 0) return fail("contact", "the gap must be a length of at least 0");
+  if (wish.thickness && !(std::isfinite(*wish.thickness) && *wish.thickness > 0))
+    return fail("contact", "the thickness must be a length above 0");
+  const Model& model = generation.model;
+  ShellSet selected;
+  if (wish.select) {
+    Result<select::Chosen> chosen =
+        select::evaluate(model, *wish.select, select::EntityKind::element, generation.relations->names, progress);
+    if (!chosen) return fail(chosen.error());
+    selected = std::move(chosen->shells);
+    std::sort(selected.begin(), selected.end());
+  }
+  const ShellSet* only = wish.select ? &selected : nullptr;
+  Share share(progress);
+  if (!share.from_to(0, 0)(0)) return fail(cancelled());
+  const spatial::BoxTree& tree = search.tree(model);
+  const std::shared_ptr<const contact::ContactThickness> thickness =
+      wish.thickness ? std::make_shared<const contact::ContactThickness>(contact::given_thickness(model, *wish.thickness))
+                     : search.section_thickness(model);
+  const std::vector<contact::ShellCrossing> crossings =
+      contact::find_shell_crossings(model, tree, nullptr, share.from_to(kTreeBuilt, kCrossingsFound));
+  if (share.stopped()) return fail(cancelled());
+  const std::vector<contact::Penetration> close =
+      contact::find_penetrations(model, tree, *thickness, crossings, {wish.gap, only}, share.from_to(kCrossingsFound, 1));
+  if (share.stopped()) return fail(cancelled());
+
+  std::vector<contact::Perforation> crossed = contact::group_crossings(model, crossings);
+  if (only != nullptr)
+    std::erase_if(crossed,
+                  [&](const contact::Perforation& found) { return !has_any(found.shells_a, *only) && !has_any(found.shells_b, *only); });
+  const std::vector<contact::PerforationDepth> depths = contact::perforation_depths(model, tree, crossed, 0);
+  const RegionWriter writer(generation, *thickness);
+  Contacts contacts;
+  contacts.perforations = crossed.size();
+  for (std::size_t i = 0; i < crossed.size(); ++i) contacts.regions.push_back(writer.perforation(crossed[i], depths[i]));
+  for (const contact::Penetration& found : close) {
+    ++(found.is_clearance ? contacts.clearances : contacts.penetrations);
+    contacts.regions.push_back(writer.penetration(found));
+  }
+  for (const PartIndex part : thickness->without) contacts.without_thickness.push_back((*model.parts)[part.value].id);
+  return contacts;
+}
+
+}  // namespace prismesh::mesh::document
