@@ -177,9 +177,12 @@ void add_reading_commands(Parser& parser) {
       ->check(CLI::Validator([](const std::string& text) { return wrong_gap(text); }, "LENGTH"));
   penetrations_app
       ->add_option_function<std::string>(
-          "--thickness", [options = penetrations_options](const std::string& text) { options->thickness = positive_number(text); },
-          "section: that of elements and sections; a number: for all shells; contact (default): as section, since the contacts of decks "
-          "aren't read yet")
+          "--thickness",
+          [options = penetrations_options](const std::string& text) {
+            options->thickness = positive_number(text), options->by_contacts = text != "section";
+          },
+          "contact (default): what the deck's contacts say, else as section; section: that of elements and sections; a number: for all "
+          "shells")
       ->check(CLI::Validator([](const std::string& text) { return wrong_thickness(text); }, "contact|section|LENGTH"));
 }
 

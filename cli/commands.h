@@ -72,7 +72,8 @@ struct PenetrationsOptions {
   std::filesystem::path deck;
   std::optional<std::string> select;  ///< an expression
   double gap = 0;                     ///< deck's length unit
-  std::optional<double> thickness;    ///< for all shells; nothing: that of elements and sections
+  std::optional<double> thickness;    ///< for all shells; nothing: as below
+  bool by_contacts = true;            ///< what the deck's contacts say, else that of elements and sections
 };
 int penetrations(const PenetrationsOptions& options, const Common& common, const Context& context);
 

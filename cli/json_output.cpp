@@ -184,7 +184,7 @@ std::string penetrations_json(const mesh::document::Contacts& contacts) {
                {"at", point(region.at)},
                {"worst", {region.worst_a, region.worst_b}},
                {"joined", region.joined},
-               {"contact", nullptr},
+               {"contact", region.contact.empty() ? Json(nullptr) : Json(region.contact)},
                {"clear", false},
                {"why", region.why},
                {"thickness_from", region.thickness_from}};

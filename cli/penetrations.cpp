@@ -28,6 +28,7 @@ void print_region(std::ostream& out, const ContactRegion& region, std::string_vi
   else
     out << "half through";
   out << ", at (" << region.at.transpose() << "): " << region.worst_a << ", " << region.worst_b;
+  if (!region.contact.empty()) out << "; seen by " << printable(region.contact);
   out << (region.joined ? "; joined there\n" : "\n");
 }
 
@@ -42,7 +43,7 @@ int penetrations(const PenetrationsOptions& options, const Common& common, const
   if (!document) return refuse(document.error());
   mesh::document::ContactSearch search;
   const Result<Contacts> found =
-      mesh::document::find_contacts(document->current(), search, {options.select, options.gap, options.thickness});
+      mesh::document::find_contacts(document->current(), search, {options.select, options.gap, options.thickness, options.by_contacts});
   if (!found) return refuse(found.error());
   const Contacts& contacts = *found;
   say_warnings(context, *document);

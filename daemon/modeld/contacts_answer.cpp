@@ -44,6 +44,7 @@ ipc::Contacts contacts_answer(std::uint64_t generation, const mesh::document::Co
     told.joined = region.joined;
     told.why = region.why;
     told.thickness_from = region.thickness_from;
+    told.contact = region.contact;
     for (const mesh::ShellSet* side : {&region.shells_a, &region.shells_b})
       for (const mesh::ShellIndex shell : within(*side, room.shells)) told.shells.push_back(shell.value);
     for (const mesh::contact::CurveSegment& s : within(region.curve, room.segments))

@@ -16,7 +16,7 @@ Result<DragSession> DragSession::begin(std::uint64_t number, const mesh::documen
   DragSession session(number, std::move(base), std::move(*drag), std::move(*preview));
   const mesh::Model& model = session.base_->model;
   if (session.drag_.shells().size() <= kMaxWatchedShells)
-    session.watched_.emplace(model, contact.tree(model), contact.section_thickness(model), session.drag_.nodes(), session.drag_.shells());
+    session.watched_.emplace(model, contact.tree(model), contact.thickness(*session.base_), session.drag_.nodes(), session.drag_.shells());
   return session;
 }
 

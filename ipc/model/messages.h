@@ -88,7 +88,7 @@ struct GetField {
 struct GetContacts {
   std::optional<std::string> select;  ///< an expression: only where one of its shells takes part; absent: everywhere
   double gap = 0;                     ///< how far faces must be apart, deck's length unit
-  std::optional<double> thickness;    ///< of all shells; absent: that of elements and sections
+  std::optional<double> thickness;    ///< of all shells; absent: that in the deck's contacts, else of elements and sections
 };
 /// The camera of a view, for views that move together. In screen millimetres and deck coordinates, as in kiosk/stereo/view.h.
 struct Camera {

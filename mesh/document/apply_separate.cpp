@@ -14,6 +14,7 @@
 #include "base/readable_number.h"
 #include "mesh/contact/separate.h"
 #include "mesh/document/apply.h"
+#include "mesh/document/contacts.h"
 #include "mesh/document/deck_relations.h"
 #include "mesh/document/dependents_report.h"
 #include "mesh/document/joined_sheets.h"
@@ -140,7 +141,7 @@ Result<void> apply_edit(const Document& document, const Separate& edit, Generati
   wish.allowed_depth = edit.allowed_depth;
   const Movable movable(current);
   const spatial::BoxTree tree(current.model);
-  const contact::ContactThickness thickness = contact::section_thickness(current.model);
+  const contact::ContactThickness thickness = contact_thickness(current);
   const std::vector<connections::JoinedSheets::Pair> pairs = joints(current);
   const Result<contact::Separation> done = contact::separate({current.model, tree, thickness, judged_by(document), current.quality, pairs,
                                                               [&](NodeIndex node) { return movable.why_stays(node); }},

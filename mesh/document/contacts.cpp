@@ -5,6 +5,7 @@
 #include <string_view>
 #include <utility>
 
+#include "mesh/contact/deck_contacts.h"
 #include "mesh/contact/find_penetrations.h"
 #include "mesh/contact/find_perforations.h"
 #include "mesh/contact/joints_of_parts.h"
@@ -21,11 +22,16 @@ namespace {
 /// Shares of the whole time, as of a million shells of a curved sheet.
 constexpr double kTreeBuilt = 0.2, kCrossingsFound = 0.5;
 
+contact::DeckContacts deck_contacts(const Generation& generation) {
+  const deck::Deck& deck = *generation.relations->deck;
+  return {generation.model, deck.contacts, *deck.references};
+}
+
 /// Fills in what regions of both kinds have.
 class RegionWriter {
  public:
   RegionWriter(const Generation& generation, const contact::ContactThickness& thickness)
-      : model_(generation.model), thickness_(thickness), joints_(model_, joints(generation)) {}
+      : model_(generation.model), thickness_(thickness), joints_(model_, joints(generation)), contacts_(deck_contacts(generation)) {}
 
   ContactRegion perforation(const contact::Perforation& found, const contact::PerforationDepth& depth) const {
     ContactRegion region = common("perforation", found.part_a, found.part_b, found.shells_a, found.shells_b);
@@ -35,7 +41,7 @@ class RegionWriter {
     region.area = contact::area_of_smaller(model_, found.shells_a, found.shells_b);
     region.at = depth.deepest.valid() ? model_.position(depth.deepest) : found.curve.front().from;
     const auto& [a, b] = found.crossings.front();
-    region.worst_a = shell_name(a), region.worst_b = shell_name(b);
+    name_worst(region, a, b);
     region.curve = found.curve;
     for (std::size_t i = 0; i < depth.nearest.size(); ++i) {
       const Vec3& to = depth.nearest[i];
@@ -51,7 +57,7 @@ class RegionWriter {
     region.mean_depth = found.mean_depth;
     region.area = found.area;
     region.at = (found.worst.on_a + found.worst.on_b) / 2;
-    region.worst_a = shell_name(found.worst.a), region.worst_b = shell_name(found.worst.b);
+    name_worst(region, found.worst.a, found.worst.b);
     for (const auto* nodes : {&found.nodes_a, &found.nodes_b})
       for (const contact::WayOut& way : *nodes)
         region.vectors.push_back({way.node, model_.position(way.node) + way.depth * way.direction, way.depth});
@@ -60,6 +66,10 @@ class RegionWriter {
 
  private:
   std::string shell_name(ShellIndex shell) const { return "shell:" + std::to_string(model_.shell_ids[shell.value]); }
+  void name_worst(ContactRegion& region, ShellIndex a, ShellIndex b) const {
+    region.worst_a = shell_name(a), region.worst_b = shell_name(b);
+    if (const ContactCard* card = contacts_.between(a, b)) region.contact = card->name();
+  }
   const Part* part(PartIndex index) const { return index.valid() ? &(*model_.parts)[index.value] : nullptr; }
 
   ContactRegion common(const char* kind, PartIndex a, PartIndex b, const ShellSet& shells_a, const ShellSet& shells_b) const {
@@ -79,6 +89,7 @@ class RegionWriter {
   const Model& model_;
   const contact::ContactThickness& thickness_;
   contact::JointsOfParts joints_;
+  contact::DeckContacts contacts_;
 };
 
 bool has_any(const ShellSet& shells, const ShellSet& of) {
@@ -138,6 +149,13 @@ std::shared_ptr<const contact::ContactThickness> ContactSearch::section_thicknes
   return thickness_;
 }
 
+std::shared_ptr<const contact::ContactThickness> ContactSearch::thickness(const Generation& generation) {
+  if (generation.relations->deck->contacts.cards.empty()) return section_thickness(generation.model);
+  return std::make_shared<const contact::ContactThickness>(contact_thickness(generation));
+}
+
+contact::ContactThickness contact_thickness(const Generation& generation) { return deck_contacts(generation).thickness(); }
+
 Result<Contacts> find_contacts(const Generation& generation, ContactSearch& search, const ContactWish& wish, const Progress& progress) {
   if (!std::isfinite(wish.gap) || wish.gap < 0) return fail("contact", "the gap must be a length of at least 0");
   if (wish.thickness && !(std::isfinite(*wish.thickness) && *wish.thickness > 0))
@@ -156,8 +174,9 @@ Result<Contacts> find_contacts(const Generation& generation, ContactSearch& sear
   if (!share.from_to(0, 0)(0)) return fail(cancelled());
   const spatial::BoxTree& tree = search.tree(model);
   const std::shared_ptr<const contact::ContactThickness> thickness =
-      wish.thickness ? std::make_shared<const contact::ContactThickness>(contact::given_thickness(model, *wish.thickness))
-                     : search.section_thickness(model);
+      wish.thickness     ? std::make_shared<const contact::ContactThickness>(contact::given_thickness(model, *wish.thickness))
+      : wish.by_contacts ? search.thickness(generation)
+                         : search.section_thickness(model);
   const std::vector<contact::ShellCrossing> crossings =
       contact::find_shell_crossings(model, tree, nullptr, share.from_to(kTreeBuilt, kCrossingsFound));
   if (share.stopped()) return fail(cancelled());

@@ -25,6 +25,8 @@ class ContactSearch {
   const spatial::BoxTree& tree(const Model& model);
   /// The thickness by elements and sections; computed again only where the model's differ from those of the last call.
   std::shared_ptr<const contact::ContactThickness> section_thickness(const Model& model);
+  /// As contact_thickness(); of decks without contacts that can be read it costs no more than section_thickness().
+  std::shared_ptr<const contact::ContactThickness> thickness(const Generation& generation);
 
  private:
   std::optional<spatial::BoxTree> tree_;
@@ -35,7 +37,8 @@ class ContactSearch {
 struct ContactWish {
   std::optional<std::string> select;  ///< an expression: only where one of its shells takes part
   double gap = 0;                     ///< how far faces must be apart, deck's length unit
-  std::optional<double> thickness;    ///< of all shells; nothing: that of elements and sections
+  std::optional<double> thickness{};  ///< of all shells; nothing: as below
+  bool by_contacts = true;            ///< what the deck's contacts say (mesh/contact/deck_contacts.h), else that of elements and sections
 };
 
 /// A node that is too close to the other side, or has entered it, and where it must go.
@@ -58,6 +61,7 @@ struct ContactRegion {
   Vec3 at = Vec3::Zero();           ///< the deepest place; half through: a point of the curve
   std::string worst_a, worst_b;     ///< "shell:7" of each side: the deepest pair, or the first that cross
   bool joined = false;              ///< a weld, bond or tie joins the parts there
+  std::string contact;              ///< the deck's contact that keeps the worst pair apart: ContactCard::name(); empty: none is known
   std::string why;                  ///< why it can't be separated
   std::string thickness_from;
   std::vector<contact::CurveSegment> curve;  ///< along which they cross
@@ -69,6 +73,9 @@ struct Contacts {
   std::vector<ContactRegion> regions;           ///< perforations, then the others; of each the worst first
   std::vector<std::int64_t> without_thickness;  ///< ids of parts, ascending
 };
+
+/// How thick shells are in the deck's contacts; in decks without contacts that can be read, by elements and sections. Costs all shells.
+contact::ContactThickness contact_thickness(const Generation& generation);
 
 /// On all cores; the same whatever their number. Errors: of the expression; a gap or thickness that isn't usable; cancelled.
 Result<Contacts> find_contacts(const Generation& generation, ContactSearch& search, const ContactWish& wish, const Progress& progress = {});

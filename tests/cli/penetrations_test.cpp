@@ -60,6 +60,35 @@ TEST_F(Cli, penetrations_lists_what_is_too_close) {
   EXPECT_THAT(prismesh({"penetrations", deck}).out, ::testing::HasSubstr("part:1 floor and part:2 roof are too close, 0.25 mm deep"));
 }
 
+TEST_F(Cli, penetrations_takes_thicknesses_and_names_from_the_decks_contacts) {
+  // The two plates are 1 and 2 thick, 1.25 apart: 0.25 too close by their sections.
+  const auto regions = [&](const std::string& contact, std::vector<std::string> options = {}) {
+    std::string text = plates_text(1.25);
+    text.insert(text.size() - 5, contact);
+    options.insert(options.begin(), {"penetrations", write("plates.k", text), "--json"});
+    const Outcome outcome = prismesh(options);
+    EXPECT_EQ(outcome.status, kDone) << outcome.err;
+    return outcome.json()["regions"];
+  };
+  const std::string sides =
+      "*CONTACT_AUTOMATIC_SURFACE_TO_SURFACE_ID\n        32Floor and roof\n         1         2         3         3\n\n";
+  const json thicker = regions(sides + "       0.0       0.0       1.5       2.0\n");
+  ASSERT_EQ(thicker.size(), 1u);
+  EXPECT_NEAR(thicker[0]["depth"]["max"].get<double>(), 0.5, 1e-12);
+  EXPECT_EQ(thicker[0]["contact"], "CONTACT_AUTOMATIC_SURFACE_TO_SURFACE 32 Floor and roof");
+  EXPECT_EQ(thicker[0]["thickness_from"], "contact");
+  EXPECT_EQ(regions(sides + "       0.0       0.0       0.0       0.0       0.5       0.5\n").size(), 0u)
+      << "half as thick: they are clear";
+  const json by_section = regions(sides + "       0.0       0.0       1.5       2.0\n", {"--thickness", "section"});
+  ASSERT_EQ(by_section.size(), 1u);
+  EXPECT_NEAR(by_section[0]["depth"]["max"].get<double>(), 0.25, 1e-12);
+  EXPECT_EQ(by_section[0]["thickness_from"], "section");
+  // Another pair's contact: the plates have the thickness of their sections, and nothing keeps them apart.
+  const json unseen = regions("*CONTACT_AUTOMATIC_SINGLE_SURFACE\n         3         0         3\n\n\n");
+  ASSERT_EQ(unseen.size(), 1u);
+  EXPECT_EQ(unseen[0]["contact"], nullptr);
+}
+
 TEST_F(Cli, penetrations_takes_thickness_gap_and_selection) {
   const std::string deck = write("plates.k", plates_text(1.75));
   const auto regions = [&](std::vector<std::string> options) {
