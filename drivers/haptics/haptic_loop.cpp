@@ -41,7 +41,14 @@ HapticAnswer HapticLoop::step(const HapticTick& tick) {
   if (field != nullptr && field->placement != tick.sources.placement) field = nullptr;
   ForceSources sources = tick.sources;
   sources.field = field;
-  answer.contact = proxy_.step(pose_.measured_ns != 0 ? field : nullptr, pose_.position_mm, feel.friction);
+  if (pose_.measured_ns == 0) field = nullptr;
+  answer.contact = proxy_.step(field, pose_.position_mm, feel.friction);
+  // Without a force the pen passes through shells. Where it is clear of them by itself again, nothing holds it any more.
+  if (answer.contact.touching && safety_.record().phase != SafetyPhase::armed) {
+    Proxy at_pen;
+    const ProxyContact free = at_pen.step(field, pose_.position_mm, feel.friction);
+    if (free.attached) proxy_ = at_pen, answer.contact = free;
+  }
   answer.parts = force_parts(motion_, answer.contact, sources, feel);
   if (resistance != nullptr)
     answer.parts[static_cast<std::size_t>(ForceKind::resistance)] = {

@@ -189,5 +189,32 @@ TEST(coupled, without_a_pen_there_is_no_force_and_no_latch) {
   }
 }
 
+/// A disarmed pen that was pushed through a sheet is on the other side then: it can be armed there, and is held on that side.
+TEST(coupled, a_pen_without_force_passes_and_can_be_armed_on_the_other_side) {
+  double goal_mm = 5;
+  HapticRig rig(
+      {},
+      [&](double) {
+        haptic_pen::SimulatedHand hand;
+        hand.goal_mm = {0, 0, goal_mm};
+        return hand;
+      },
+      test::make_field([](const Eigen::Vector3d& at) { return std::abs(at.z()); }, {}));
+  EXPECT_FALSE(rig.run_ms(200).contact.touching);
+  goal_mm = 0.2;
+  EXPECT_TRUE(rig.run_ms(400).contact.touching) << "it touches the sheet that it is in";
+  goal_mm = -5;
+  HapticAnswer answer = rig.run_ms(600);
+  EXPECT_FALSE(answer.contact.touching);
+  EXPECT_LT(answer.contact.proxy_mm.z(), -4);
+  answer = rig.arm();
+  EXPECT_EQ(answer.safety.record.phase, SafetyPhase::armed);
+  goal_mm = 3;
+  answer = rig.run_ms(1500);
+  EXPECT_TRUE(answer.contact.touching);
+  EXPECT_LT(answer.contact.proxy_mm.z(), 0) << "armed, it is held on its side";
+  EXPECT_TRUE(rig.kept) << rig.checker.fault();
+}
+
 }  // namespace
 }  // namespace prismesh::drivers::haptics
