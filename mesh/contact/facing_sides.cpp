@@ -163,7 +163,7 @@ double FacingSides::lift_shell(const Model& moved, const SideLifts& now, double 
     lowest = std::min(lowest, moved.position(node).dot(direction_));
   }
   way.normalize();
-  const double height = region_.is_perforation ? std::max(top_ - lowest, 0.0) + reach_ : kSweepInReaches * reach_ / cos_of_wish_;
+  const double height = region_.perforation ? std::max(top_ - lowest, 0.0) + reach_ : kSweepInReaches * reach_ / cos_of_wish_;
   box.extend(box.min() + height * way).extend(box.max() + height * way);
   const auto add = [&](Lifts& lifts, const Lifts& current, NodeIndex node, double length) {
     const auto at = current.find(node);

@@ -5,11 +5,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <numeric>
 #include <utility>
 
 #include "base/readable_number.h"
 #include "mesh/contact/facing_sides.h"
 #include "mesh/contact/meant_regions.h"
+#include "mesh/contact/perforation_depth.h"
 #include "mesh/contact/separation_check.h"
 #include "mesh/contact/sort_unique.h"
 #include "mesh/contact/spread_lifts.h"
@@ -57,7 +59,7 @@ class RegionSeparator {
       const bool is_first = share == all_shares.front();
       bool own_may_help = true;
       for (const bool each_its_own : {false, true}) {
-        if (each_its_own && (region_.is_perforation || wish_.direction || !own_may_help)) continue;
+        if (each_its_own && (region_.perforation || wish_.direction || !own_may_help)) continue;
         for (const double slope : kSlopes) {
           if (progress && !progress(fraction)) return fail(cancelled());
           Outcome outcome = attempt({share, each_its_own, slope});
@@ -77,7 +79,7 @@ class RegionSeparator {
   std::vector<double> shares() const {
     const bool upper = region_.may_move[region_.upper], lower = region_.may_move[region_.lower()];
     std::vector<double> shares;
-    if (upper && lower && !region_.is_perforation) shares.push_back(0.5);
+    if (upper && lower && !region_.perforation) shares.push_back(0.5);
     if (upper) shares.push_back(1);
     if (lower) shares.push_back(0);
     return shares;
@@ -169,6 +171,45 @@ class RegionSeparator {
   const MeantRegion& region_;
 };
 
+/// What is to be tried for a region: each piece that could be pushed back, those first that are no larger than the rest of their sheet, of
+/// these the one first whose longest move is the shortest.
+std::vector<MeantRegion> ways_of(const SeparationInput& input, const SeparationWish& wish, const SeparatedModel& before,
+                                 const MeantRegion& region) {
+  std::vector<MeantRegion> ways{region};
+  if (!region.perforation) return ways;
+  std::vector<std::pair<bool, double>> costs;
+  const auto cost_of = [&](const MeantRegion& way) {
+    SideLifts unused;
+    return FacingSides(input, wish, before.model, before.tree, way, false).add_missing(before.model, {}, 1, unused);
+  };
+  costs.emplace_back(false, cost_of(region));
+  for (EnteringPiece& piece : entering_pieces(input.model, input.tree, *region.perforation)) {
+    if (!piece.is_larger && piece.depth.a_enters == (region.upper == 0)) continue;
+    MeantRegion way = region;
+    let_enter(wish, std::move(piece.depth), way);
+    costs.emplace_back(piece.is_larger, cost_of(way));
+    ways.push_back(std::move(way));
+  }
+  std::vector<std::size_t> order(ways.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t x, std::size_t y) { return costs[x] < costs[y]; });
+  std::vector<MeantRegion> sorted;
+  for (const std::size_t i : order) sorted.push_back(std::move(ways[i]));
+  return sorted;
+}
+
+/// The first way that does no harm; if none, the reason of the first.
+Result<Outcome> separate_region(const SeparationInput& input, const SeparationWish& wish, const SeparatedModel& before,
+                                const MeantRegion& region, const Progress& progress, double fraction) {
+  Outcome first;
+  for (const MeantRegion& way : ways_of(input, wish, before, region)) {
+    Result<Outcome> outcome = RegionSeparator(input, wish, before, way).separate(progress, fraction);
+    if (!outcome || outcome->why.empty()) return outcome;
+    if (first.why.empty()) first.why = std::move(outcome->why);
+  }
+  return first;
+}
+
 /// The model after one pass over the regions, with the shells that each region changed.
 struct Pass {
   SeparatedModel state;
@@ -184,7 +225,7 @@ Result<Pass> separate_all(const SeparationInput& input, const SeparationWish& wi
     if (progress && !progress(fraction)) return fail(cancelled());
     pass.why.push_back(regions[i].why_left);
     if (!pass.why.back().empty()) continue;
-    Result<Outcome> outcome = RegionSeparator(input, wish, pass.state, regions[i]).separate(progress, fraction);
+    Result<Outcome> outcome = separate_region(input, wish, pass.state, regions[i], progress, fraction);
     if (!outcome) return fail(outcome.error());
     pass.why.back() = outcome->why;
     if (!outcome->why.empty()) continue;
