@@ -128,6 +128,45 @@ TEST(LiftApart, of_parallel_and_inclined_triangles) {
   EXPECT_NEAR(lift_apart(at(-1.3, 1, -2), flat, Vec3::UnitZ(), 0.5), 2.4, 1e-9) << "its corner passes the other's side at 0.3: 0.4 above";
 }
 
+TEST(LiftApart, where_corners_stay) {
+  const Triangle flat{Vec3(-9, -9, 0), Vec3(9, -9, 0), Vec3(0, 9, 0)};
+  const Triangle steep{Vec3(-1, 0, -1), Vec3(1, 0, 1), Vec3(1, 1, 1)};
+  EXPECT_NEAR(lift_corners_apart(steep, {true, false, false}, flat, Vec3::UnitZ(), 0.5).value_or(-1), 1.5, 1e-6);
+  EXPECT_NEAR(lift_corners_apart(steep, {true, true, false}, flat, Vec3::UnitZ(), 0.5).value_or(-1), 1.5, 1e-6);
+  EXPECT_FALSE(lift_corners_apart(steep, {false, true, true}, flat, Vec3::UnitZ(), 0.5)) << "the corner that stays is below";
+  EXPECT_FALSE(lift_corners_apart(steep, {false, false, false}, flat, Vec3::UnitZ(), 0.5));
+  EXPECT_EQ(lift_corners_apart(steep, {false, false, false}, {flat[0], flat[1], Vec3(0, -9, -5)}, Vec3::UnitZ(), 0.5).value_or(-1), 0)
+      << "it is clear";
+  const Triangle post{Vec3(-0.1, 0, -9), Vec3(0.1, 0.1, -9), Vec3(0, 0, 0.6)};
+  const Triangle over{Vec3(-2, 0.01, 0), Vec3(2, 0.01, 0), Vec3(2, 0.02, 0)};
+  EXPECT_NEAR(lift_corners_apart(over, {false, true, true}, post, Vec3::UnitZ(), 0.1).value_or(-1), 1.4, 0.02)
+      << "halfway between a corner that stays and those that go";
+}
+
+TEST(LiftApart, where_corners_stay_is_enough_and_not_more_than_that) {
+  std::mt19937 random(5);
+  const auto place = [&](double z) {
+    const auto uniform = [&] { return static_cast<double>(random()) / 2147483648.0 - 1; };
+    const double x = uniform(), y = uniform();
+    return Vec3(2 * x, 2 * y, z + 0.4 * uniform());
+  };
+  int lifted = 0;
+  for (int i = 0; i < 300; ++i) {
+    const Triangle moving{place(0), place(0), place(1)}, fixed{place(0), place(0), place(0)};
+    const auto lift = lift_corners_apart(moving, {true, true, false}, fixed, Vec3::UnitZ(), 0.2);
+    if (!lift || *lift == 0) continue;
+    ++lifted;
+    const auto misses = [&](double share) {
+      const Vec3 by = share * *lift * Vec3::UnitZ();
+      return lift_apart({moving[0] + by, moving[1] + by, moving[2]}, fixed, Vec3::UnitZ(), 0.2);
+    };
+    EXPECT_LE(misses(1), 1e-7);
+    EXPECT_LE(misses(1.5), 1e-7) << "further on, too";
+    EXPECT_GT(misses(0.999), 1e-7);
+  }
+  EXPECT_GT(lifted, 60);
+}
+
 TEST(Separate, moves_both_of_two_close_plates_by_half) {
   for (const double height : {0.9, -0.4}) {
     const Separated result = separate_in(close_plates(height), 1);
@@ -217,6 +256,29 @@ TEST(Separate, leaves_a_bump_whose_sheets_are_locked) {
   const Separated result = separate_in(model, given_thickness(model, 0.5), {}, locked(model, 1));
   EXPECT_TRUE(result.done.nodes.empty() || result.done.left.empty());
   expect_left(separate_in(model, given_thickness(model, 0.5), {}, [](NodeIndex) { return std::string_view("are locked"); }), "are locked");
+}
+
+/// The nodes of the second sheet of `piercing_plate` in this column from its edge.
+std::function<std::string_view(NodeIndex)> welded_column(std::function<std::string_view(NodeIndex)> others, std::size_t column) {
+  constexpr std::size_t kFirst = 19 * 13, kStride = 13;
+  return [others = std::move(others), column](NodeIndex node) {
+    return node.value >= kFirst && (node.value - kFirst) % kStride == column ? "carry welds or ties" : others(node);
+  };
+}
+
+TEST(Separate, goes_on_beside_nodes_that_stay_and_need_not_move) {
+  const Model model = piercing_plate(20, 1).model();
+  const Separated result = separate_in(model, given_thickness(model, 0.8), {}, welded_column(locked(model, 0), 6));
+  expect_clear(result, 0.8, 1.8);
+  for (const NodeIndex node : result.done.nodes) EXPECT_NE((node.value - 19 * 13) % 13, 6u);
+  expect_left(separate_in(model, given_thickness(model, 0.8), {}, welded_column(locked(model, 0), 2)), "carry welds or ties");
+}
+
+TEST(Separate, moves_the_other_side_where_welds_hold_the_one_that_enters) {
+  const Model model = piercing_plate(20, 1).model();
+  const Separated result = separate_in(model, given_thickness(model, 0.8), {}, welded_column(goes, 2));
+  expect_clear(result, 0.8, 1.8);
+  for (const NodeIndex node : result.done.nodes) EXPECT_LT(node.value, 19u * 13u);
 }
 
 /// A spherical cap whose lowest point is at `depth` below a plate.
