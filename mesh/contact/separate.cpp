@@ -40,7 +40,8 @@ struct Attempt {
 enum class Fails : std::uint8_t { for_good, gentler_may_help, own_directions_may_help };
 
 struct Outcome {
-  SeparatedModel state;
+  SeparatedModel state;  ///< without its contacts
+  Contacts at_moved;     ///< of the shells that changed
   NodeSet moved;
   std::string why;  ///< it failed; empty: it didn't
   Fails fails_by = Fails::for_good;
@@ -116,9 +117,10 @@ class RegionSeparator {
   void finish(const FacingSides& sides, Outcome& outcome) const {
     outcome.state.tree = before_.tree;
     outcome.state.states = before_.states;
-    outcome.state.contacts = before_.contacts;
+    outcome.state.reach = before_.reach;
     Harm harm = harm_of(input_, wish_, before_, outcome.state, outcome.moved, {sides.upper(), sides.lower()});
     outcome.why = std::move(harm.why);
+    outcome.at_moved = std::move(harm.at_moved);
     outcome.fails_by = harm.to_shells ? Fails::gentler_may_help : Fails::for_good;
   }
 
@@ -229,8 +231,13 @@ Result<Pass> separate_all(const SeparationInput& input, const SeparationWish& wi
     if (!outcome) return fail(outcome.error());
     pass.why.back() = outcome->why;
     if (!outcome->why.empty()) continue;
-    pass.touched[i] = shells_touching(pass.state.model, outcome->moved);
+    const ShellSet& touched = pass.touched[i] = shells_touching(pass.state.model, outcome->moved);
+    const auto has_moved = [&](ShellIndex shell) { return std::binary_search(touched.begin(), touched.end(), shell); };
+    Contacts contacts = std::move(pass.state.contacts);
+    std::erase_if(contacts, [&](const auto& entry) { return has_moved(entry.first.first) || has_moved(entry.first.second); });
+    contacts.merge(outcome->at_moved);
     pass.state = std::move(outcome->state);
+    pass.state.contacts = std::move(contacts);
   }
   return pass;
 }
@@ -279,7 +286,9 @@ Result<Separation> separate(const SeparationInput& input, const SeparationWish& 
   done.regions_before = regions.size();
   for (const MeantRegion& region : regions) done.depth_before = std::max(done.depth_before, region.depth.value_or(0));
   if (regions.empty()) return done;
-  const SeparatedModel before{input.model, input.tree, input.states, by_pair(found, wish.gap)};
+  const auto& thickness = input.thickness.of_shell;
+  const SeparatedModel before{input.model, input.tree, input.states, by_pair(found, wish.gap),
+                              wish.gap + *std::max_element(thickness.begin(), thickness.end())};
   Result<Pass> pass = separate_all(input, wish, before, regions, progress);
   while (pass) {
     found = find_contacts(input, wish, pass->state.model, pass->state.tree);
