@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/readable_number.h"
+#include "mesh/contact/contacts_about.h"
 #include "mesh/contact/facing_sides.h"
 #include "mesh/contact/meant_regions.h"
 #include "mesh/contact/perforation_depth.h"
@@ -290,8 +291,14 @@ Result<Separation> separate(const SeparationInput& input, const SeparationWish& 
   const SeparatedModel before{input.model, input.tree, input.states, by_pair(found, wish.gap),
                               wish.gap + *std::max_element(thickness.begin(), thickness.end())};
   Result<Pass> pass = separate_all(input, wish, before, regions, progress);
+  ShellSet meant;
+  for (const MeantRegion& region : regions)
+    for (const ShellSet& shells : region.shells) meant.insert(meant.end(), shells.begin(), shells.end());
   while (pass) {
-    found = find_contacts(input, wish, pass->state.model, pass->state.tree);
+    ShellSet moved;
+    for (const ShellSet& touched : pass->touched) moved.insert(moved.end(), touched.begin(), touched.end());
+    sort_unique(moved);
+    found = find_contacts_about(input, wish, before, pass->state, moved, meant);
     if (!leave_harmful(before, by_pair(found, wish.gap), wish.gap, *pass, regions)) break;
     pass = separate_all(input, wish, before, regions, progress);
   }

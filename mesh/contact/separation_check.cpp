@@ -10,7 +10,7 @@
 #include "base/counted.h"
 #include "mesh/contact/find_penetrations.h"
 #include "mesh/contact/meant_region.h"
-#include "mesh/contact/shell_triangles.h"
+#include "mesh/contact/near_shells.h"
 #include "mesh/contact/sort_unique.h"
 
 namespace prismesh::mesh::contact {
@@ -26,23 +26,6 @@ bool is_worse(const Contact& after, const Contacts& contacts_before, const std::
   if (after.depth - gap <= kMinDepthShare * after.mean_thickness) return false;  // only the gap makes it
   const double depth_before = before != contacts_before.end() ? before->second.depth : gap;
   return after.depth > depth_before + kMaxDeeperShare * after.mean_thickness;
-}
-
-ShellSet near_of(const SeparatedModel& before, const SeparatedModel& after, const ShellSet& touched) {
-  ShellSet near = touched;
-  for (const SeparatedModel* state : {&before, &after})
-    for (const ShellIndex shell : touched) {
-      if (!state->tree.contains(shell)) continue;
-      const spatial::FloatBox box = state->tree.box_of(shell);
-      const Vec3 low(box.low[0], box.low[1], box.low[2]), high(box.high[0], box.high[1], box.high[2]);
-      if (!can_decide(low) || !can_decide(high)) continue;
-      state->tree.near_box(low, high, before.reach, [&](ShellIndex other, const spatial::FloatBox&) {
-        near.push_back(other);
-        return true;
-      });
-    }
-  sort_unique(near);
-  return near;
 }
 
 bool has_shell(const ShellSet& shells, ShellIndex shell) { return std::binary_search(shells.begin(), shells.end(), shell); }
@@ -104,7 +87,10 @@ Harm harm_of(const SeparationInput& input, const SeparationWish& wish, const Sep
   quality::rejudge(after.model, input.criteria, touched, after.states, unused);
   if (std::string why = why_failing(before, after, touched); !why.empty()) return {std::move(why), true, {}};
   after.tree.follow(after.model);
-  const ShellSet near = near_of(before, after, touched);
+  ShellSet near = touched;
+  for (const SeparatedModel* state : {&before, static_cast<const SeparatedModel*>(&after)})
+    add_near_shells(state->tree, touched, before.reach, near);
+  sort_unique(near);
   const Contacts now = by_pair(find_contacts(input, wish, after.model, after.tree, &near), wish.gap);
   Harm harm;
   for (const auto& [pair, contact] : now) {
