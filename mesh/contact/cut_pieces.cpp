@@ -16,7 +16,7 @@ namespace prismesh::mesh::contact {
 
 namespace {
 
-constexpr std::size_t kMaxTimesLarger = 8;  ///< a larger piece is of use up to this multiple of what is cut off
+constexpr std::size_t kMaxTimesLarger = 4;  ///< a larger piece is of use up to this multiple of what is cut off
 
 using Link = std::pair<NodeIndex, NodeIndex>;  ///< the lower index first
 

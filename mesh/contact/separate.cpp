@@ -174,23 +174,22 @@ class RegionSeparator {
   const MeantRegion& region_;
 };
 
-/// What is to be tried for a region: each piece that could be pushed back, those first that are no larger than the rest of their sheet, of
-/// these the one first whose longest move is the shortest.
+/// What is to be tried for a region: each piece that could be pushed back, the one first whose longest move is the shortest.
 std::vector<MeantRegion> ways_of(const SeparationInput& input, const SeparationWish& wish, const SeparatedModel& before,
                                  const MeantRegion& region) {
   std::vector<MeantRegion> ways{region};
   if (!region.perforation) return ways;
-  std::vector<std::pair<bool, double>> costs;
+  std::vector<double> costs;
   const auto cost_of = [&](const MeantRegion& way) {
     SideLifts unused;
     return FacingSides(input, wish, before.model, before.tree, way, false).add_missing(before.model, {}, 1, unused);
   };
-  costs.emplace_back(false, cost_of(region));
+  costs.push_back(cost_of(region));
   for (EnteringPiece& piece : entering_pieces(input.model, input.tree, *region.perforation)) {
     if (!piece.is_larger && piece.depth.a_enters == (region.upper == 0)) continue;
     MeantRegion way = region;
     let_enter(wish, std::move(piece.depth), way);
-    costs.emplace_back(piece.is_larger, cost_of(way));
+    costs.push_back(cost_of(way));
     ways.push_back(std::move(way));
   }
   std::vector<std::size_t> order(ways.size());
