@@ -30,7 +30,7 @@ Model waving_sheets(std::mt19937& random) {
 
 TEST(ContactsAbout, are_those_that_the_search_of_the_whole_model_finds_worse) {
   std::size_t worse = 0, found_of_all = 0, found_about = 0;
-  for (std::uint32_t seed = 1; seed <= 25; ++seed) {
+  for (std::uint32_t seed = 1; seed <= 12; ++seed) {
     std::mt19937 random(seed);
     const Model model = waving_sheets(random);
     const ContactThickness thickness = given_thickness(model, 0.35);
@@ -68,7 +68,7 @@ TEST(ContactsAbout, are_those_that_the_search_of_the_whole_model_finds_worse) {
     found_of_all += contacts.size();
     found_about += contacts_about.size();
   }
-  EXPECT_GT(worse, 100u);
+  EXPECT_GT(worse, 50u);
   EXPECT_LT(found_about, found_of_all) << "some regions are far from what moved";
 }
 
