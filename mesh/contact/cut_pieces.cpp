@@ -16,6 +16,8 @@ namespace prismesh::mesh::contact {
 
 namespace {
 
+constexpr std::size_t kMaxTimesLarger = 4;  ///< a larger piece is of use up to this multiple of what is cut off
+
 using Link = std::pair<NodeIndex, NodeIndex>;  ///< the lower index first
 
 Link link_of(NodeIndex a, NodeIndex b) { return {std::min(a, b), std::max(a, b)}; }
@@ -68,8 +70,8 @@ class GrowingPieces {
     nodes_.push_back({node});
   }
 
-  /// Until all pieces but one are complete. Returns the nodes of all but the one with the most nodes.
-  std::vector<NodeIndex> grow() {
+  /// Until all pieces but one are complete; that one further while it is small enough to be of use.
+  CutPieces grow() {
     while (growing() > 1)
       for (std::size_t piece = 0; piece < nodes_.size(); ++piece)
         if (root(piece) == piece && done_[piece] < nodes_[piece].size()) step(piece);
@@ -82,11 +84,16 @@ class GrowingPieces {
       return size(a) < size(b);
     };
     const std::size_t largest = *std::max_element(roots.begin(), roots.end(), is_smaller);
-    std::vector<NodeIndex> cut_off;
+    CutPieces pieces;
     for (const std::size_t piece : roots)
-      if (piece != largest) cut_off.insert(cut_off.end(), nodes_[piece].begin(), nodes_[piece].end());
-    std::sort(cut_off.begin(), cut_off.end());
-    return cut_off;
+      if (piece != largest) pieces.cut_off.insert(pieces.cut_off.end(), nodes_[piece].begin(), nodes_[piece].end());
+    std::sort(pieces.cut_off.begin(), pieces.cut_off.end());
+    const std::size_t max_size = kMaxTimesLarger * pieces.cut_off.size();
+    while (done_[largest] < nodes_[largest].size() && nodes_[largest].size() <= max_size) step(largest);
+    if (nodes_[largest].size() > max_size) return pieces;
+    pieces.larger = std::move(nodes_[largest]);
+    std::sort(pieces.larger.begin(), pieces.larger.end());
+    return pieces;
   }
 
  private:
@@ -137,12 +144,16 @@ class GrowingPieces {
 
 }  // namespace
 
-std::vector<NodeIndex> cut_off_nodes(const Model& model, const Perforation& perforation, bool of_a) {
+CutPieces cut_pieces(const Model& model, const Perforation& perforation, bool of_a) {
   const TakenByOther taken = find_taken(model, perforation, of_a);
   GrowingPieces pieces(model, taken);
   for (const ShellIndex shell : of_a ? perforation.shells_a : perforation.shells_b)
     for (const NodeIndex node : model.shell(shell).node) pieces.add_seed(node);
   return pieces.grow();
+}
+
+std::vector<NodeIndex> cut_off_nodes(const Model& model, const Perforation& perforation, bool of_a) {
+  return cut_pieces(model, perforation, of_a).cut_off;
 }
 
 }  // namespace prismesh::mesh::contact

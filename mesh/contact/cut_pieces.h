@@ -13,4 +13,11 @@ namespace prismesh::mesh::contact {
 /// than what is cut off, times the number of pieces.
 std::vector<NodeIndex> cut_off_nodes(const Model& model, const Perforation& perforation, bool of_a);
 
+/// Both sides of the curve in one sheet.
+struct CutPieces {
+  std::vector<NodeIndex> cut_off;  ///< as above
+  std::vector<NodeIndex> larger;   ///< the piece with the most nodes, ascending; empty if it is much larger than what is cut off
+};
+CutPieces cut_pieces(const Model& model, const Perforation& perforation, bool of_a);
+
 }  // namespace prismesh::mesh::contact

@@ -11,7 +11,6 @@
 #include "mesh/contact/close_shells.h"
 #include "mesh/contact/lift_apart.h"
 #include "mesh/contact/shares_node.h"
-#include "mesh/contact/shell_triangles.h"
 #include "mesh/contact/sort_unique.h"
 #include "mesh/model/adjacency.h"
 
@@ -153,6 +152,17 @@ Vec3 FacingSides::way_of(NodeIndex node) const {
   return own != own_ways_.end() ? own->second : direction_;
 }
 
+/// How far a triangle must go along `way` of length 1, and which of its corners. If corners that stay must go, they are among them.
+FacingSides::CornerLift FacingSides::lift_of(const ShellTriangle& moving, const ShellTriangle& fixed, const Vec3& way, double apart) const {
+  CornerLift lift{lift_apart(moving.at, fixed.at, way, apart)};
+  if (!(lift.length > kMinLiftShare * reach_)) return {0};
+  std::array<bool, 3> is_free{};
+  for (std::size_t i = 0; i < 3; ++i) is_free[i] = input_.why_stays(moving.node[i]).empty();
+  if (is_free[0] && is_free[1] && is_free[2]) return lift;
+  if (const auto of_free = lift_corners_apart(moving.at, is_free, fixed.at, way, apart)) return {*of_free, is_free};
+  return lift;
+}
+
 double FacingSides::lift_shell(const Model& moved, const SideLifts& now, double upper_share, ShellIndex shell, SideLifts& needed) {
   Eigen::AlignedBox3d box = box_of(moved, {shell});
   if (box.isEmpty()) return 0;
@@ -163,7 +173,7 @@ double FacingSides::lift_shell(const Model& moved, const SideLifts& now, double 
     lowest = std::min(lowest, moved.position(node).dot(direction_));
   }
   way.normalize();
-  const double height = region_.is_perforation ? std::max(top_ - lowest, 0.0) + reach_ : kSweepInReaches * reach_ / cos_of_wish_;
+  const double height = region_.perforation ? std::max(top_ - lowest, 0.0) + reach_ : kSweepInReaches * reach_ / cos_of_wish_;
   box.extend(box.min() + height * way).extend(box.max() + height * way);
   const auto add = [&](Lifts& lifts, const Lifts& current, NodeIndex node, double length) {
     const auto at = current.find(node);
@@ -182,13 +192,21 @@ double FacingSides::lift_shell(const Model& moved, const SideLifts& now, double 
         if (upper_share < 1)
           for (const NodeIndex node : its.node) pair_way += way_of(node);
         pair_way.normalize();
-        const double lift = lift_apart(own.at, its.at, pair_way, apart);
-        if (!(lift > kMinLiftShare * reach_)) return;
-        longest = std::max(longest, lift);
-        if (upper_share > 0)
-          for (const NodeIndex node : own.node) add(needed.upper, now.upper, node, upper_share * lift);
-        if (upper_share < 1)
-          for (const NodeIndex node : its.node) add(needed.lower, now.lower, node, (1 - upper_share) * lift);
+        const bool moves_upper = upper_share > 0, moves_lower = upper_share < 1;
+        CornerLift lift{0};
+        if (!moves_lower)
+          lift = lift_of(own, its, pair_way, apart);
+        else if (!moves_upper)
+          lift = lift_of(its, own, -pair_way, apart);
+        else
+          lift.length = lift_apart(own.at, its.at, pair_way, apart);
+        if (!(lift.length > kMinLiftShare * reach_)) return;
+        longest = std::max(longest, lift.length);
+        for (std::size_t i = 0; i < 3; ++i) {
+          if (!lift.corners[i]) continue;
+          if (moves_upper) add(needed.upper, now.upper, own.node[i], upper_share * lift.length);
+          if (moves_lower) add(needed.lower, now.lower, its.node[i], (1 - upper_share) * lift.length);
+        }
       });
     });
     return true;

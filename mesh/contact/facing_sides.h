@@ -1,10 +1,12 @@
 // The two sides of a region: which of their shells can meet, the way out, and how much of it is missing. Private to mesh/contact.
 #pragma once
 
+#include <array>
 #include <map>
 
 #include "mesh/contact/meant_region.h"
 #include "mesh/contact/separation.h"
+#include "mesh/contact/shell_triangles.h"
 #include "mesh/contact/spread_lifts.h"
 #include "mesh/spatial/box_tree.h"
 #include "mesh/spatial/closest_point.h"
@@ -40,12 +42,17 @@ class FacingSides {
     Vec3 direction;
     double weight = 0;
   };
+  struct CornerLift {
+    double length = 0;
+    std::array<bool, 3> corners{true, true, true};  ///< which move
+  };
   OwnWay way_at(const spatial::ShellTree& lower, NodeIndex node) const;
   Vec3 mean_way(const spatial::ShellTree& lower, const NodeSet& nodes) const;
   void grow_lower(const Vec3& direction);
   void find_own_ways();
   Vec3 way_of(NodeIndex node) const;
   bool is_entering(NodeIndex node) const;
+  CornerLift lift_of(const ShellTriangle& moving, const ShellTriangle& fixed, const Vec3& way, double apart) const;
   double lift_upper(const Model& moved, const SideLifts& now, double upper_share, SideLifts& needed);
   double lift_shell(const Model& moved, const SideLifts& now, double upper_share, ShellIndex shell, SideLifts& needed);
 

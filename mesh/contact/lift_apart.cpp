@@ -10,7 +10,9 @@ namespace prismesh::mesh::contact {
 namespace {
 
 constexpr int kMaxLiftSteps = 60;
+constexpr double kMinWeight = 1e-3;      ///< of the corners that go: below it they can't lift a point
 constexpr double kLiftTolerance = 1e-9;  ///< of the least distance
+constexpr double kCornerTolerance = 1e-7;
 
 /// By circles about both, seen along the direction.
 bool passes_beside(const Triangle& own, const Triangle& other, const Vec3& direction, double least) {
@@ -24,6 +26,17 @@ bool passes_beside(const Triangle& own, const Triangle& other, const Vec3& direc
   const Vec3 between = of_other - of_own;
   const double along = between.dot(direction);
   return between.squaredNorm() - along * along > 1.000001 * radii * radii;
+}
+
+/// The weights of a point of a triangle at its corners.
+std::array<double, 3> weights_of(const Triangle& t, const Vec3& point) {
+  const Vec3 normal = (t[1] - t[0]).cross(t[2] - t[0]);
+  std::array<double, 3> weights{1.0 / 3, 1.0 / 3, 1.0 / 3};
+  const double area2 = normal.squaredNorm();
+  if (!(area2 > 0)) return weights;
+  for (std::size_t i = 0; i < 3; ++i)
+    weights[i] = std::clamp((t[(i + 2) % 3] - t[(i + 1) % 3]).cross(point - t[(i + 1) % 3]).dot(normal) / area2, 0.0, 1.0);
+  return weights;
 }
 
 }  // namespace
@@ -55,6 +68,26 @@ double lift_apart(const Triangle& moving, const Triangle& fixed, const Vec3& dir
     if (!(lift > 0)) return 0;
   }
   return lift;
+}
+
+std::optional<double> lift_corners_apart(const Triangle& moving, const std::array<bool, 3>& goes, const Triangle& fixed,
+                                         const Vec3& direction, double least) {
+  double lift = 0;
+  for (int step = 0; step < kMaxLiftSteps; ++step) {
+    Triangle now = moving;
+    for (std::size_t i = 0; i < 3; ++i)
+      if (goes[i]) now[i] += lift * direction;
+    const double missing = lift_apart(now, fixed, direction, least);
+    if (missing <= kCornerTolerance * least) return lift;
+    for (Vec3& corner : now) corner += missing * direction;
+    const std::array<double, 3> weights = weights_of(now, spatial::nearest_of_triangles(now, fixed).on_a);
+    double weight = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+      if (goes[i]) weight += weights[i];
+    if (weight < kMinWeight) return std::nullopt;
+    lift += missing / weight;
+  }
+  return std::nullopt;
 }
 
 }  // namespace prismesh::mesh::contact

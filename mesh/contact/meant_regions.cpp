@@ -34,14 +34,12 @@ MeantRegion of_perforation(const SeparationInput& input, const SeparationWish& w
   MeantRegion region;
   region.part = {found.part_a, found.part_b};
   region.shells = {found.shells_a, found.shells_b};
-  region.is_perforation = true;
-  region.upper = depth.a_enters ? 0 : 1;
-  region.entering = std::move(depth.entering);
+  region.perforation = found;
   region.depth = depth.max;
-  const double least = least_distance(input, wish, region);
-  region.way = depth.max.value_or(0) + least - std::min(wish.allowed_depth, least);
+  region.least = least_distance(input, wish, region);
+  let_enter(wish, std::move(depth), region);
   if (region.entering.empty()) region.why_left = "half through: nothing is cut off";
-  if (!(least > 0))
+  if (!(region.least > 0))
     region.why_left = part_name(input.model, region.part[0]) +
                       (region.part[0] == region.part[1] ? "" : " and " + part_name(input.model, region.part[1])) +
                       (region.part[0] == region.part[1] ? " has" : " have") + " no thickness: say which gap is to be left";
@@ -91,6 +89,12 @@ bool is_meant(const SeparationWish& wish, MeantRegion& region) {
 }
 
 }  // namespace
+
+void let_enter(const SeparationWish& wish, PerforationDepth depth, MeantRegion& region) {
+  region.upper = depth.a_enters ? 0 : 1;
+  region.entering = std::move(depth.entering);
+  region.way = depth.max.value_or(0) + region.least - std::min(wish.allowed_depth, region.least);
+}
 
 std::vector<MeantRegion> find_meant_regions(const SeparationInput& input, const SeparationWish& wish, const FoundContacts& contacts) {
   std::vector<MeantRegion> regions;

@@ -13,4 +13,7 @@ namespace prismesh::mesh::contact {
 /// reason.
 std::vector<MeantRegion> find_meant_regions(const SeparationInput& input, const SeparationWish& wish, const FoundContacts& found);
 
+/// Makes the piece of a perforation the one that is pushed back.
+void let_enter(const SeparationWish& wish, PerforationDepth depth, MeantRegion& region);
+
 }  // namespace prismesh::mesh::contact

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <iterator>
 #include <utility>
 
 #include <Eigen/Geometry>
@@ -78,18 +79,24 @@ void measure(const Model& model, const spatial::ShellTree& other, double thickne
   depth.mean = sum / static_cast<double>(measured);
 }
 
-PerforationDepth depth_of(const Model& model, const spatial::BoxTree& tree, const Perforation& perforation, double thickness_share) {
+PerforationDepth depth_of_piece(const Model& model, const spatial::BoxTree& tree, const Perforation& perforation, bool a_enters,
+                                NodeSet entering, double thickness_share) {
   PerforationDepth depth;
-  std::vector<NodeIndex> of_a = cut_off_nodes(model, perforation, true), of_b = cut_off_nodes(model, perforation, false);
-  depth.a_enters = !of_a.empty() && (of_b.empty() || area_at(model, of_a) <= area_at(model, of_b));
-  depth.entering = std::move(depth.a_enters ? of_a : of_b);
+  depth.a_enters = a_enters;
+  depth.entering = std::move(entering);
   if (depth.entering.empty()) return depth;
-  const ShellSet& crossed = depth.a_enters ? perforation.shells_b : perforation.shells_a;
-  const PartIndex other = depth.a_enters ? perforation.part_b : perforation.part_a;
+  const ShellSet& crossed = a_enters ? perforation.shells_b : perforation.shells_a;
+  const PartIndex other = a_enters ? perforation.part_b : perforation.part_a;
   const bool is_fold = perforation.part_a == perforation.part_b;
   measure(model, spatial::ShellTree(model, is_fold ? crossed : shells_about(model, tree, other, crossed, depth.entering)), thickness_share,
           depth);
   return depth;
+}
+
+PerforationDepth depth_of(const Model& model, const spatial::BoxTree& tree, const Perforation& perforation, double thickness_share) {
+  std::vector<NodeIndex> of_a = cut_off_nodes(model, perforation, true), of_b = cut_off_nodes(model, perforation, false);
+  const bool a_enters = !of_a.empty() && (of_b.empty() || area_at(model, of_a) <= area_at(model, of_b));
+  return depth_of_piece(model, tree, perforation, a_enters, std::move(a_enters ? of_a : of_b), thickness_share);
 }
 
 }  // namespace
@@ -101,6 +108,20 @@ std::vector<PerforationDepth> perforation_depths(const Model& model, const spati
     for (std::size_t i = begin; i < end; ++i) depths[i] = depth_of(model, tree, perforations[i], thickness_share);
   });
   return depths;
+}
+
+std::vector<EnteringPiece> entering_pieces(const Model& model, const spatial::BoxTree& tree, const Perforation& perforation) {
+  std::vector<EnteringPiece> found, larger;
+  for (const bool of_a : {true, false}) {
+    CutPieces pieces = cut_pieces(model, perforation, of_a);
+    if (pieces.cut_off.empty()) continue;
+    found.push_back({depth_of_piece(model, tree, perforation, of_a, std::move(pieces.cut_off), 0), false});
+    if (pieces.larger.empty()) continue;
+    PerforationDepth depth = depth_of_piece(model, tree, perforation, of_a, std::move(pieces.larger), 0);
+    if (depth.max < found.back().depth.max) larger.push_back({std::move(depth), true});
+  }
+  std::move(larger.begin(), larger.end(), std::back_inserter(found));
+  return found;
 }
 
 }  // namespace prismesh::mesh::contact

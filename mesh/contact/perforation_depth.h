@@ -19,4 +19,13 @@ namespace prismesh::mesh::contact {
 std::vector<PerforationDepth> perforation_depths(const Model& model, const spatial::BoxTree& tree,
                                                  std::span<const Perforation> perforations, double thickness_share);
 
+/// A piece of one side that could be pushed back through the other side.
+struct EnteringPiece {
+  PerforationDepth depth;
+  bool is_larger = false;  ///< the other piece of its sheet has fewer nodes
+};
+/// Returns what the curve cuts off from each side, side a's first; then the larger pieces that go less deep than what is cut off from
+/// their sheet. Empty: half through. Costs as much as the depth. Preconditions as above.
+std::vector<EnteringPiece> entering_pieces(const Model& model, const spatial::BoxTree& tree, const Perforation& perforation);
+
 }  // namespace prismesh::mesh::contact

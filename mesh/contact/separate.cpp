@@ -5,11 +5,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <numeric>
 #include <utility>
 
 #include "base/readable_number.h"
+#include "mesh/contact/contacts_about.h"
 #include "mesh/contact/facing_sides.h"
 #include "mesh/contact/meant_regions.h"
+#include "mesh/contact/perforation_depth.h"
 #include "mesh/contact/separation_check.h"
 #include "mesh/contact/sort_unique.h"
 #include "mesh/contact/spread_lifts.h"
@@ -38,7 +41,8 @@ struct Attempt {
 enum class Fails : std::uint8_t { for_good, gentler_may_help, own_directions_may_help };
 
 struct Outcome {
-  SeparatedModel state;
+  SeparatedModel state;  ///< without its contacts
+  Contacts at_moved;     ///< of the shells that changed
   NodeSet moved;
   std::string why;  ///< it failed; empty: it didn't
   Fails fails_by = Fails::for_good;
@@ -57,7 +61,7 @@ class RegionSeparator {
       const bool is_first = share == all_shares.front();
       bool own_may_help = true;
       for (const bool each_its_own : {false, true}) {
-        if (each_its_own && (region_.is_perforation || wish_.direction || !own_may_help)) continue;
+        if (each_its_own && (region_.perforation || wish_.direction || !own_may_help)) continue;
         for (const double slope : kSlopes) {
           if (progress && !progress(fraction)) return fail(cancelled());
           Outcome outcome = attempt({share, each_its_own, slope});
@@ -77,7 +81,7 @@ class RegionSeparator {
   std::vector<double> shares() const {
     const bool upper = region_.may_move[region_.upper], lower = region_.may_move[region_.lower()];
     std::vector<double> shares;
-    if (upper && lower && !region_.is_perforation) shares.push_back(0.5);
+    if (upper && lower && !region_.perforation) shares.push_back(0.5);
     if (upper) shares.push_back(1);
     if (lower) shares.push_back(0);
     return shares;
@@ -114,9 +118,10 @@ class RegionSeparator {
   void finish(const FacingSides& sides, Outcome& outcome) const {
     outcome.state.tree = before_.tree;
     outcome.state.states = before_.states;
-    outcome.state.contacts = before_.contacts;
+    outcome.state.reach = before_.reach;
     Harm harm = harm_of(input_, wish_, before_, outcome.state, outcome.moved, {sides.upper(), sides.lower()});
     outcome.why = std::move(harm.why);
+    outcome.at_moved = std::move(harm.at_moved);
     outcome.fails_by = harm.to_shells ? Fails::gentler_may_help : Fails::for_good;
   }
 
@@ -169,6 +174,44 @@ class RegionSeparator {
   const MeantRegion& region_;
 };
 
+/// What is to be tried for a region: each piece that could be pushed back, the one first whose longest move is the shortest.
+std::vector<MeantRegion> ways_of(const SeparationInput& input, const SeparationWish& wish, const SeparatedModel& before,
+                                 const MeantRegion& region) {
+  std::vector<MeantRegion> ways{region};
+  if (!region.perforation) return ways;
+  std::vector<double> costs;
+  const auto cost_of = [&](const MeantRegion& way) {
+    SideLifts unused;
+    return FacingSides(input, wish, before.model, before.tree, way, false).add_missing(before.model, {}, 1, unused);
+  };
+  costs.push_back(cost_of(region));
+  for (EnteringPiece& piece : entering_pieces(input.model, input.tree, *region.perforation)) {
+    if (!piece.is_larger && piece.depth.a_enters == (region.upper == 0)) continue;
+    MeantRegion way = region;
+    let_enter(wish, std::move(piece.depth), way);
+    costs.push_back(cost_of(way));
+    ways.push_back(std::move(way));
+  }
+  std::vector<std::size_t> order(ways.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t x, std::size_t y) { return costs[x] < costs[y]; });
+  std::vector<MeantRegion> sorted;
+  for (const std::size_t i : order) sorted.push_back(std::move(ways[i]));
+  return sorted;
+}
+
+/// The first way that does no harm; if none, the reason of the first.
+Result<Outcome> separate_region(const SeparationInput& input, const SeparationWish& wish, const SeparatedModel& before,
+                                const MeantRegion& region, const Progress& progress, double fraction) {
+  Outcome first;
+  for (const MeantRegion& way : ways_of(input, wish, before, region)) {
+    Result<Outcome> outcome = RegionSeparator(input, wish, before, way).separate(progress, fraction);
+    if (!outcome || outcome->why.empty()) return outcome;
+    if (first.why.empty()) first.why = std::move(outcome->why);
+  }
+  return first;
+}
+
 /// The model after one pass over the regions, with the shells that each region changed.
 struct Pass {
   SeparatedModel state;
@@ -184,12 +227,17 @@ Result<Pass> separate_all(const SeparationInput& input, const SeparationWish& wi
     if (progress && !progress(fraction)) return fail(cancelled());
     pass.why.push_back(regions[i].why_left);
     if (!pass.why.back().empty()) continue;
-    Result<Outcome> outcome = RegionSeparator(input, wish, pass.state, regions[i]).separate(progress, fraction);
+    Result<Outcome> outcome = separate_region(input, wish, pass.state, regions[i], progress, fraction);
     if (!outcome) return fail(outcome.error());
     pass.why.back() = outcome->why;
     if (!outcome->why.empty()) continue;
-    pass.touched[i] = shells_touching(pass.state.model, outcome->moved);
+    const ShellSet& touched = pass.touched[i] = shells_touching(pass.state.model, outcome->moved);
+    const auto has_moved = [&](ShellIndex shell) { return std::binary_search(touched.begin(), touched.end(), shell); };
+    Contacts contacts = std::move(pass.state.contacts);
+    std::erase_if(contacts, [&](const auto& entry) { return has_moved(entry.first.first) || has_moved(entry.first.second); });
+    contacts.merge(outcome->at_moved);
     pass.state = std::move(outcome->state);
+    pass.state.contacts = std::move(contacts);
   }
   return pass;
 }
@@ -238,10 +286,18 @@ Result<Separation> separate(const SeparationInput& input, const SeparationWish& 
   done.regions_before = regions.size();
   for (const MeantRegion& region : regions) done.depth_before = std::max(done.depth_before, region.depth.value_or(0));
   if (regions.empty()) return done;
-  const SeparatedModel before{input.model, input.tree, input.states, by_pair(found, wish.gap)};
+  const auto& thickness = input.thickness.of_shell;
+  const SeparatedModel before{input.model, input.tree, input.states, by_pair(found, wish.gap),
+                              wish.gap + *std::max_element(thickness.begin(), thickness.end())};
   Result<Pass> pass = separate_all(input, wish, before, regions, progress);
+  ShellSet meant;
+  for (const MeantRegion& region : regions)
+    for (const ShellSet& shells : region.shells) meant.insert(meant.end(), shells.begin(), shells.end());
   while (pass) {
-    found = find_contacts(input, wish, pass->state.model, pass->state.tree);
+    ShellSet moved;
+    for (const ShellSet& touched : pass->touched) moved.insert(moved.end(), touched.begin(), touched.end());
+    sort_unique(moved);
+    found = find_contacts_about(input, wish, before, pass->state, moved, meant);
     if (!leave_harmful(before, by_pair(found, wish.gap), wish.gap, *pass, regions)) break;
     pass = separate_all(input, wish, before, regions, progress);
   }

@@ -10,7 +10,7 @@
 #include "base/counted.h"
 #include "mesh/contact/find_penetrations.h"
 #include "mesh/contact/meant_region.h"
-#include "mesh/contact/shell_triangles.h"
+#include "mesh/contact/near_shells.h"
 #include "mesh/contact/sort_unique.h"
 
 namespace prismesh::mesh::contact {
@@ -26,25 +26,6 @@ bool is_worse(const Contact& after, const Contacts& contacts_before, const std::
   if (after.depth - gap <= kMinDepthShare * after.mean_thickness) return false;  // only the gap makes it
   const double depth_before = before != contacts_before.end() ? before->second.depth : gap;
   return after.depth > depth_before + kMaxDeeperShare * after.mean_thickness;
-}
-
-ShellSet near_of(const SeparationInput& input, const SeparationWish& wish, const SeparatedModel& before, const SeparatedModel& after,
-                 const ShellSet& touched) {
-  const double reach = wish.gap + *std::max_element(input.thickness.of_shell.begin(), input.thickness.of_shell.end());
-  ShellSet near = touched;
-  for (const SeparatedModel* state : {&before, &after})
-    for (const ShellIndex shell : touched) {
-      if (!state->tree.contains(shell)) continue;
-      const spatial::FloatBox box = state->tree.box_of(shell);
-      const Vec3 low(box.low[0], box.low[1], box.low[2]), high(box.high[0], box.high[1], box.high[2]);
-      if (!can_decide(low) || !can_decide(high)) continue;
-      state->tree.near_box(low, high, reach, [&](ShellIndex other, const spatial::FloatBox&) {
-        near.push_back(other);
-        return true;
-      });
-    }
-  sort_unique(near);
-  return near;
 }
 
 bool has_shell(const ShellSet& shells, ShellIndex shell) { return std::binary_search(shells.begin(), shells.end(), shell); }
@@ -104,26 +85,27 @@ Harm harm_of(const SeparationInput& input, const SeparationWish& wish, const Sep
   const ShellSet touched = shells_touching(after.model, moved);
   quality::Counts unused;
   quality::rejudge(after.model, input.criteria, touched, after.states, unused);
-  if (std::string why = why_failing(before, after, touched); !why.empty()) return {std::move(why), true};
+  if (std::string why = why_failing(before, after, touched); !why.empty()) return {std::move(why), true, {}};
   after.tree.follow(after.model);
-  const ShellSet near = near_of(input, wish, before, after, touched);
+  ShellSet near = touched;
+  for (const SeparatedModel* state : {&before, static_cast<const SeparatedModel*>(&after)})
+    add_near_shells(state->tree, touched, before.reach, near);
+  sort_unique(near);
   const Contacts now = by_pair(find_contacts(input, wish, after.model, after.tree, &near), wish.gap);
-  std::erase_if(after.contacts,
-                [&](const auto& entry) { return has_shell(touched, entry.first.first) || has_shell(touched, entry.first.second); });
-  std::string pushed;
+  Harm harm;
   for (const auto& [pair, contact] : now) {
     const auto& [a, b] = pair;
     const bool touches_a = has_shell(touched, a), touches_b = has_shell(touched, b);
-    if (touches_a || touches_b) after.contacts[pair] = contact;
+    if (touches_a || touches_b) harm.at_moved[pair] = contact;
     const bool of_region =
         (has_shell(sides.upper, a) && has_shell(sides.lower, b)) || (has_shell(sides.upper, b) && has_shell(sides.lower, a));
     if (of_region && (contact.crosses || contact.depth > wish.allowed_depth + kMinDepthShare * contact.mean_thickness))
-      return {"the way out isn't free of the other side", false};
-    if (of_region || !(touches_a || touches_b) || !pushed.empty() || !is_worse(contact, before.contacts, pair, wish.gap)) continue;
-    pushed = "it would push " + part_name(after.model, after.model.shell_parts[(touches_a ? a : b).value]) + " into " +
-             part_name(after.model, after.model.shell_parts[(touches_a ? b : a).value]);
+      return {"the way out isn't free of the other side", false, {}};
+    if (of_region || !(touches_a || touches_b) || !harm.why.empty() || !is_worse(contact, before.contacts, pair, wish.gap)) continue;
+    harm.why = "it would push " + part_name(after.model, after.model.shell_parts[(touches_a ? a : b).value]) + " into " +
+               part_name(after.model, after.model.shell_parts[(touches_a ? b : a).value]);
   }
-  return {pushed, false};
+  return harm;
 }
 
 std::vector<std::pair<ShellIndex, ShellIndex>> worse_pairs(const Contacts& before, const Contacts& after, double gap) {

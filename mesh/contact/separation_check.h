@@ -37,6 +37,7 @@ struct SeparatedModel {
   spatial::BoxTree tree;
   ChunkedArray<quality::ShellState> states;
   Contacts contacts;
+  double reach = 0;  ///< shells farther apart aren't too close, wherever they are
 };
 
 /// The sides of the region, which must be clear of each other afterwards.
@@ -49,9 +50,10 @@ struct SidesToClear {
 struct Harm {
   std::string why;         ///< a sentence; empty: it does none
   bool to_shells = false;  ///< a gentler change may do none
+  Contacts at_moved;       ///< if it does none: of the shells that changed, as they are afterwards
 };
-/// Compares the shells at `moved` and what is near them. `after` has the changed model and the rest of `before`, which is brought up to
-/// date.
+/// Compares the shells at `moved` and what is near them. `after` has the changed model, and the tree and the states of `before`, which are
+/// brought up to date. Costs what is near, not the model.
 Harm harm_of(const SeparationInput& input, const SeparationWish& wish, const SeparatedModel& before, SeparatedModel& after,
              const NodeSet& moved, const SidesToClear& sides);
 

@@ -1,8 +1,10 @@
-// Measures the search for crossing shells, and for shells that are too close, in a million shells: one curved sheet, which has none, and
-// two sheets that wave.
+// Measures the search for crossing shells, and for shells that are too close, in a million shells: one curved sheet, which has none, two
+// sheets that wave, and two of which a bead of one goes through the other, which is separated.
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include <benchmark/benchmark.h>
@@ -11,7 +13,9 @@
 #include "mesh/contact/find_perforations.h"
 #include "mesh/contact/moved_shells.h"
 #include "mesh/contact/perforation_depth.h"
+#include "mesh/contact/separate.h"
 #include "mesh/model/adjacency.h"
+#include "mesh/quality/report.h"
 #include "mesh/spatial/box_tree.h"
 #include "tests/bench/million_quads.h"
 
@@ -122,6 +126,55 @@ void begin_a_drag(benchmark::State& state) {
   }
 }
 BENCHMARK(begin_a_drag)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+/// Two smooth layers, 10 mm apart; a bead of the upper one is pulled through the lower one by 2 mm. Smooth, as rough shells fail when they
+/// are moved at all.
+Model bead_through_layer() {
+  Model model = two_layers();
+  constexpr std::size_t kStride = 1001, kFirstAbove = kStride / 2 + 1, kColumn = 500, kRow = kFirstAbove + 250;
+  const auto place = [](double x, double y) { return Vec3(x, y, 300 * std::sin(x / 800) * std::cos(y / 900)); };
+  for (std::size_t j = 0; j < kStride; ++j)
+    for (std::size_t i = 0; i < kStride; ++i) {
+      const double x = 5.0 * static_cast<double>(i), y = 5.0 * static_cast<double>(j < kFirstAbove ? j : j - kFirstAbove);
+      const double r2 = (Vec3(x, y, 0) - Vec3(5.0 * kColumn, 5.0 * (kRow - kFirstAbove), 0)).squaredNorm();
+      const Vec3 above(1.3, 2.1, 10 - 12 * std::exp(-r2 / (20 * 20)));
+      model.positions.set(j * kStride + i, j < kFirstAbove ? place(x, y) : Vec3(place(x, y) + above));
+    }
+  return model;
+}
+
+struct BeadToSeparate {
+  Model model = with_its_adjacency(bead_through_layer());
+  spatial::BoxTree tree{model};
+  contact::ContactThickness thickness = contact::given_thickness(model, 1.5);
+  quality::SizedCriteria criteria{quality::default_criteria(), 5};
+  ChunkedArray<quality::ShellState> states = quality::judge_model(model, criteria);
+};
+
+void find_bead(benchmark::State& state) {
+  const BeadToSeparate bead;
+  std::size_t regions = 0;
+  for ([[maybe_unused]] auto _ : state) {
+    const auto crossings = contact::find_shell_crossings(bead.model, bead.tree);
+    const auto penetrations = contact::find_penetrations(bead.model, bead.tree, bead.thickness, crossings);
+    regions = contact::group_crossings(bead.model, crossings).size() + penetrations.size();
+  }
+  state.counters["regions"] = static_cast<double>(regions);
+}
+BENCHMARK(find_bead)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+void separate_bead(benchmark::State& state) {
+  const BeadToSeparate bead;
+  contact::Separation done;
+  for ([[maybe_unused]] auto _ : state)
+    if (auto separated = contact::separate(
+            {bead.model, bead.tree, bead.thickness, bead.criteria, bead.states, {}, [](NodeIndex) { return std::string_view(); }}, {}))
+      done = std::move(*separated);
+  state.counters["removed"] = static_cast<double>(done.removed());
+  if (!done.left.empty()) state.SetLabel(done.left.front().why);
+  state.counters["moved"] = static_cast<double>(done.nodes.size());
+}
+BENCHMARK(separate_bead)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 }  // namespace
 }  // namespace prismesh::mesh::bench

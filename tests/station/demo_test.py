@@ -71,7 +71,7 @@ class Demo(unittest.TestCase):
         lines = [line for line in done.stdout.splitlines() if line and not line.startswith(" ")]
         words = [line.split()[0] for line in lines]
         self.assertEqual(words[: len(STEPS)], STEPS)
-        self.assertEqual(words[-4:], ["compared", "saved", "modeld", "doctor"])
+        self.assertEqual(words[-5:], ["compared", "saved", "modeld", "doctor", "contact"])
         return {line.split()[0]: line for line in lines}
 
     def test_the_sample_ends_with_none_failing(self):
