@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
-#include <cstring>
+#include <cstdint>
 
 namespace prismesh::drivers::haptics {
 namespace {
@@ -25,7 +26,10 @@ std::int64_t passed_ns(std::int64_t from, std::int64_t to) {
 }
 
 /// The same bits, so that a force that isn't a number equals itself.
-bool same_bits(const Eigen::Vector3d& a, const double (&b)[3]) { return std::memcmp(a.data(), b, sizeof b) == 0; }
+bool same_bits(const Eigen::Vector3d& a, const double (&b)[3]) {
+  const auto same = [&](int axis) { return std::bit_cast<std::uint64_t>(a[axis]) == std::bit_cast<std::uint64_t>(b[axis]); };
+  return same(0) && same(1) && same(2);
+}
 
 class Replay {
  public:

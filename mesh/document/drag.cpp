@@ -144,7 +144,7 @@ Vec3 Drag::worsening_direction(std::size_t shell, float composite) const {
   const std::array<std::int32_t, 4>& corners = corners_[shell];
   const auto at = [&](std::size_t corner) {
     const std::int32_t from = corners[corner];
-    return from >= 0 ? positions_[static_cast<std::size_t>(from)] : fixed_[static_cast<std::size_t>(~from)];
+    return from >= 0 ? positions_[static_cast<std::size_t>(from)] : fixed_[static_cast<std::size_t>(-1 - from)];
   };
   double longest = 0;
   for (std::size_t corner = 0; corner < 4; ++corner) longest = std::max(longest, (at((corner + 1) % 4) - at(corner)).norm());

@@ -70,7 +70,7 @@ class Drag {
   std::vector<quality::ShellProperties> properties_;  ///< of shells_
   std::vector<quality::ShellState> states_;
   std::vector<float> composites_before_;  ///< of shells_, once `worsening` was asked for
-  quality::Counts counts_elsewhere_;  ///< of the shells that don't change
+  quality::Counts counts_elsewhere_;      ///< of the shells that don't change
   quality::Counts counts_;
 };
 

@@ -22,7 +22,8 @@ panels::Signal signal_of(const ipc::PenInfo& pen) {
 std::string advice_for(const ipc::PenInfo& pen, bool holds) {
   if (holds) return "Release the button to keep the move; Esc takes it back.";
   if (!pen.trouble.empty()) return is_in(pen, PenStage::latched) ? pen.trouble + " (Ctrl+Shift+P)" : pen.trouble;
-  if (is_in(pen, PenStage::armed)) return "Its first button takes what it touches, its second one moves its space. Ctrl+Shift+P disarms it.";
+  if (is_in(pen, PenStage::armed))
+    return "Its first button takes what it touches, its second one moves its space. Ctrl+Shift+P disarms it.";
   if (is_in(pen, PenStage::disarmed)) return "Ctrl+Shift+P arms it: then it pushes back.";
   if (is_in(pen, PenStage::homing)) return "Move it to its stops once.";
   return {};
