@@ -9,8 +9,8 @@ namespace {
 constexpr std::uint32_t kGrabButton = 1, kClutchButton = 2;
 const Vec3 kHeldByRightHand = Vec3(0.45, 0.5, 0.74).normalized();
 
-template <std::size_t n>
-bool finite_numbers(const std::array<double, n>& numbers) {
+template <std::size_t kCount>
+bool finite_numbers(const std::array<double, kCount>& numbers) {
   return std::all_of(numbers.begin(), numbers.end(), [](double each) { return std::isfinite(each); });
 }
 
