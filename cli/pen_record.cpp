@@ -110,13 +110,15 @@ Result<std::string> record_pen(const DevicesOptions& options, const Context& con
   RingCopy ring(client->page().ticks());
   ring.write(out);
   const auto until = std::chrono::steady_clock::now() + std::chrono::duration<double>(options.seconds);
-  while (out && !context.stop() && std::chrono::steady_clock::now() < until) {
+  bool ended = false;
+  while (out && !ended && !context.stop() && std::chrono::steady_clock::now() < until) {
     std::this_thread::sleep_for(kReadPeriod);
+    ended = !client->poll();  // its page stays, with its last ticks
     ring.write(out);
   }
   out.close();
   if (!out) return fail(file.string(), "it can't be written");
-  return ring.text(file);
+  return ring.text(file) + (ended ? "the pen's process has ended\n" : "");
 }
 
 Result<ReplayedPen> replay_pen(const std::filesystem::path& file, bool as_json) {

@@ -10,13 +10,13 @@ namespace prismesh::mesh::contact {
 
 namespace {
 
-constexpr int kMaxDepth = 16;         ///< of sets that name sets; a set that names itself ends there
 constexpr double kShareOfSide = 0.4;  ///< of single surface contacts without SSTHK
 constexpr std::size_t kShellGrain = 8192;
 
 /// What a set names, with the sets that it names.
 struct Members {
-  std::vector<std::uint8_t> parts, shells, nodes;
+  std::vector<std::uint8_t> parts;
+  std::vector<std::uint8_t> shells, nodes;  ///< empty: it names none
 };
 
 class MemberFinder {
@@ -24,13 +24,13 @@ class MemberFinder {
   MemberFinder(const Model& model, const References& references, Members& members)
       : model_(model), references_(references), members_(members) {
     members.parts.assign(model.parts->size(), 0);
-    members.shells.assign(model.shell_count(), 0);
-    members.nodes.assign(model.node_count(), 0);
   }
 
-  void add(Referred referred, std::int64_t id, int depth = 0) {
+  void add(Referred referred, std::int64_t id) {
     if (!is_set(referred)) return mark({referred, ReferenceRole::single, id, id});
-    if (depth >= kMaxDepth) return;
+    // Sets may name themselves, or each other.
+    if (std::find(taken_.begin(), taken_.end(), std::pair(referred, id)) != taken_.end()) return;
+    taken_.emplace_back(referred, id);
     const auto referrers = references_.referrers();
     std::vector<std::uint8_t> is_of_set(referrers.size(), 0);
     bool any = false;
@@ -43,7 +43,7 @@ class MemberFinder {
       if (reference.takes_away)
         taken_away.push_back(reference);
       else if (is_set(reference.referred))
-        add(reference.referred, reference.first, depth + 1);
+        add(reference.referred, reference.first);
       else
         mark(reference);
     }
@@ -61,15 +61,20 @@ class MemberFinder {
       case Referred::any_element:
         each_named(
             reference, model_.shell_count(), [&](std::size_t s) { return model_.shell_ids[s]; },
-            [&](std::int64_t id) { return model_.find_shell(id).value; }, members_.shells, as);
+            [&](std::int64_t id) { return model_.find_shell(id).value; }, made(members_.shells, model_.shell_count()), as);
         break;
       case Referred::node:
         each_named(
             reference, model_.node_count(), [&](std::size_t n) { return model_.node_ids[n]; },
-            [&](std::int64_t id) { return model_.find_node(id).value; }, members_.nodes, as);
+            [&](std::int64_t id) { return model_.find_node(id).value; }, made(members_.nodes, model_.node_count()), as);
         break;
       default: break;
     }
+  }
+
+  static std::vector<std::uint8_t>& made(std::vector<std::uint8_t>& marks, std::size_t count) {
+    marks.resize(count, 0);
+    return marks;
   }
 
   /// Short ranges by the index of ids, long ones by all ids.
@@ -89,6 +94,7 @@ class MemberFinder {
   const Model& model_;
   const References& references_;
   Members& members_;
+  std::vector<std::pair<Referred, std::int64_t>> taken_;  ///< sets that were followed
 };
 
 double shortest_side(const Model& model, ShellIndex shell) {
@@ -123,12 +129,15 @@ DeckContacts::Side DeckContacts::find(const ContactSide& side, const References&
   if (side.all_but)
     for (std::uint8_t& part : members.parts) part = part == 0;
   found.parts = std::move(members.parts);
-  for (std::size_t s = 0; s < model_.shell_count(); ++s) {
-    if (model_.is_removed(ShellIndex(s))) continue;
-    const ShellNodes& nodes = model_.shell(ShellIndex(s));
-    const bool by_nodes = std::all_of(nodes.node.begin(), nodes.node.end(), [&](NodeIndex node) { return members.nodes[node.value] != 0; });
-    if (members.shells[s] != 0 || by_nodes) found.shells.push_back(ShellIndex(s));
-  }
+  if (members.shells.empty() && members.nodes.empty()) return found;
+  const auto is_named = [&](ShellIndex shell) {
+    if (!members.shells.empty() && members.shells[shell.value] != 0) return true;
+    const ShellNodes& nodes = model_.shell(shell);
+    return !members.nodes.empty() &&
+           std::all_of(nodes.node.begin(), nodes.node.end(), [&](NodeIndex node) { return members.nodes[node.value] != 0; });
+  };
+  for (std::size_t s = 0; s < model_.shell_count(); ++s)
+    if (!model_.is_removed(ShellIndex(s)) && is_named(ShellIndex(s))) found.shells.push_back(ShellIndex(s));
   return found;
 }
 

@@ -63,7 +63,9 @@ TEST(ContactsAbout, are_those_that_the_search_of_the_whole_model_finds_worse) {
       EXPECT_EQ(same->second.depth, contact.depth);
     }
     for (const auto& [pair, contact] : before.contacts)
-      if (contacts.find(pair) == contacts.end()) EXPECT_EQ(contacts_about.find(pair), contacts_about.end());
+      if (contacts.find(pair) == contacts.end()) {
+        EXPECT_EQ(contacts_about.find(pair), contacts_about.end());
+      }
     worse += worse_of_all.size();
     found_of_all += contacts.size();
     found_about += contacts_about.size();

@@ -119,6 +119,28 @@ TEST(DeckContacts, see_the_members_of_sets_of_parts_shells_and_segments) {
   EXPECT_EQ(DeckContacts(model, cards, references).thickness().of_shell, (std::vector<double>{1, 2, 3, 4, 5})) << "it names itself";
 }
 
+/// Forty sets that each name all of them twice, and a part of their own: each is followed once.
+TEST(DeckContacts, follow_sets_that_name_each_other_once) {
+  References references;
+  for (std::int64_t set = 1; set <= 40; ++set) {
+    Referrer referrer;
+    referrer.keyword = "SET";
+    referrer.id = set;
+    referrer.defines = Referred::part_set;
+    const std::uint32_t index = references.add(referrer);
+    for (std::int64_t other = 1; other <= 40; ++other)
+      for (const std::uint64_t card : {0U, 100U})
+        references.add({Referred::part_set, ReferenceRole::list, other, other, 1, index, card + static_cast<std::uint64_t>(2 * other)});
+    references.add({Referred::part, ReferenceRole::list, 1 + set % 3, 1 + set % 3, 1, index, 0});
+  }
+  references.finish();
+  const Model model = five_parts();
+  ContactCards cards;
+  cards.cards.push_back(single(of(Referred::part_set, 17)));
+  cards.cards[0].a.thickness = 9;
+  EXPECT_EQ(DeckContacts(model, cards, references).thickness().of_shell, (std::vector<double>{9, 9, 9, 4, 5}));
+}
+
 TEST(DeckContacts, of_several_contacts_the_greatest_thickness_counts) {
   ContactCards cards;
   cards.cards = {single(of(Referred::part, 1)), single(everything())};
