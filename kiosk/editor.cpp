@@ -36,6 +36,22 @@ void Editor::set_picture_size(display::PixelSize size) {
   ++context_.changes;
 }
 
+void Editor::set_room(const render::PixelRect& room) {
+  toolkit::PictureView& view = context_.view;
+  view.room = room;
+  const Eigen::Vector2d middle = toolkit::room_middle_mm(view);
+  if ((middle - view.view.middle_mm).norm() < 1e-9) return;
+  view.view.middle_mm = middle;
+  ++context_.changes;
+}
+
+void Editor::point_at(const Pointer& pointer) {
+  toolkit::PointedAt found = toolkit::pointed_at(context_, pointer);
+  const bool same = found.words == context_.pointed.words;
+  context_.pointed = std::move(found);
+  if (!same) ++context_.changes;
+}
+
 void Editor::look_from(const stereo::SeenFrom& seen) {
   context_.view.seen = seen;
   const std::int64_t now = context_.clock.now_ns();

@@ -35,8 +35,10 @@ class Editor {
   Editor& operator=(const Editor&) = delete;
 
   void set_picture_size(display::PixelSize size);
-  /// Width at the left and right that panels cover: fitting the view leaves it free.
-  void set_covered_width(double pixels) { context_.view.covered_width = pixels; }
+  /// What panels leave of the picture: the view's middle follows.
+  void set_room(const render::PixelRect& room);
+  /// Where the pointer rests; none: beside the model. Finds what is under it.
+  void point_at(const toolkit::Pointer& pointer);
   /// What the next picture is drawn for. Depth follows.
   void look_from(const stereo::SeenFrom& seen);
   void set_eyes_facts(std::optional<toolkit::EyesFacts> facts);

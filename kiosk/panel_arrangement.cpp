@@ -1,19 +1,25 @@
 #include "kiosk/panel_arrangement.h"
 
 #include <algorithm>
+#include <cmath>
+#include <filesystem>
 #include <utility>
+#include <vector>
 
 #include <imgui.h>
 
 #include "kiosk/editor_keys.h"
 #include "kiosk/input/key_table.h"
 #include "kiosk/panels/document_panel.h"
+#include "kiosk/panels/frame_panels.h"
 #include "kiosk/panels/key_panels.h"
 #include "kiosk/panels/message_panels.h"
 #include "kiosk/panels/question_box.h"
+#include "kiosk/panels/text.h"
 #include "kiosk/panels/warnings_panel.h"
 #include "kiosk/tool_list.h"
 #include "kiosk/toolkit/tool_set.h"
+#include "kiosk/tools/files/files_tool.h"
 
 namespace prismesh::kiosk {
 namespace {
@@ -23,8 +29,6 @@ using panels::kMargin;
 using panels::PanelLayout;
 using toolkit::AsksQuestions;
 using toolkit::Cover;
-using toolkit::HasList;
-using toolkit::HasStatus;
 using toolkit::ToolContext;
 
 panels::DocumentFacts document_facts(const ToolContext& context) {
@@ -34,7 +38,6 @@ panels::DocumentFacts document_facts(const ToolContext& context) {
   facts.nodes = info.nodes;
   facts.shells = info.counts.ok + info.counts.warn + info.counts.fail;  // the arrays hold removed ones too
   facts.parts = info.parts.size();
-  facts.generation = info.generation;
   facts.length_unit = info.length_unit;
   facts.target_size = facts.largest_target_size = info.target_size;
   bool first = true;
@@ -48,46 +51,93 @@ panels::DocumentFacts document_facts(const ToolContext& context) {
     facts.length_unit_guessed = state->length_unit_guessed;
     facts.target_size_guessed = state->target_size_guessed;
   }
-  facts.changed = info.changed;
   return facts;
 }
 
-void left_panel(ToolContext& context, PanelLayout& layout) {
-  if (context.open.left != nullptr) return context.open.left->draw_left(layout);
-  panels::begin_left("Document", layout.picture);
-  panels::document_head(document_facts(context));
-  for (const auto& tool : context.tools.all()) tool->draw_document_section(layout);
-  // What is pulled needs the room.
-  if (!context.tools.pulling()) panels::history_section({context.link.document.history_bytes(), context.link.document.history_cap()});
-  panels::document_foot();
+/// The commands that the bar has buttons for.
+panels::BarKeys bar_keys() {
+  const auto of_editor = [](EditorCommand command) -> const input::KeyBinding& {
+    return input::binding_of(key_bindings(), command_of(command));
+  };
+  return {of_editor(EditorCommand::undo), of_editor(EditorCommand::redo), input::binding_of(key_bindings(), tools::files::save_command()),
+          nullptr, of_editor(EditorCommand::help)};
+}
+
+void bar(ToolContext& context, PanelLayout& layout) {
+  panels::BarFacts facts;
+  if (const auto& shown = context.shown.snapshot) {
+    const std::filesystem::path path = shown->info().document;
+    facts.deck = path.filename().string();
+    facts.path = path.string();
+    facts.changed = shown->info().changed;
+    facts.can_undo = shown->info().can_undo;
+    facts.can_redo = shown->info().can_redo;
+  }
+  const auto more = [&](input::Menu menu) {
+    for (auto* tool : context.tools.with<toolkit::HasMenuEntries>()) tool->draw_menu_entries(menu, layout);
+  };
+  panels::bar_panel(facts, bar_keys(), key_bindings(), more, layout);
+}
+
+void rail(ToolContext& context, PanelLayout& layout) {
+  std::vector<toolkit::RailEntry> entries;
+  for (const auto* tool : context.tools.with<toolkit::InRail>())
+    for (const toolkit::RailEntry& entry : tool->rail()) entries.push_back(entry);
+  std::ranges::sort(entries, {}, &toolkit::RailEntry::place);
+  std::vector<panels::RailButton> buttons;
+  for (const toolkit::RailEntry& entry : entries) buttons.push_back({entry.label, entry.key, entry.on});
+  panels::rail_panel(buttons, layout);
+}
+
+toolkit::Tool* in_hand(const ToolContext& context) { return context.open.in_hand != nullptr ? context.open.in_hand : context.open.usual; }
+
+void options(ToolContext& context, PanelLayout& layout) {
+  const panels::Place& place = layout.places.options;
+  if (place.empty()) return;
+  const float padding = std::floor((place.height - ImGui::GetFrameHeight()) / 2);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(kGrid, padding));
+  panels::begin_docked("Options", place);
+  ImGui::PopStyleVar();
+  if (auto* tool = dynamic_cast<toolkit::HasOptions*>(in_hand(context)); tool != nullptr && context.shown.snapshot) {
+    panels::OptionRow row(layout);
+    tool->draw_options(row);
+  }
   ImGui::End();
 }
 
-void right_panel(ToolContext& context, PanelLayout& layout) {
-  const float width = panels::side_width(layout.picture), max_height = static_cast<float>(layout.picture.height) - 2 * kMargin;
-  ImGui::SetNextWindowPos(ImVec2(static_cast<float>(layout.picture.width) - kMargin - width, kMargin));
-  std::size_t row_count = 0;
-  float status = 0;
-  for (const HasList* tool : context.tools.with<HasList>()) row_count += tool->list_rows();
-  for (const HasStatus* tool : context.tools.with<HasStatus>())
-    status += static_cast<float>(tool->status_height(static_cast<double>(width - 4 * kGrid)));
-  const float line = ImGui::GetTextLineHeightWithSpacing();
-  ImGui::SetNextWindowSize(
-      ImVec2(width, std::min(max_height, panels::on_grid(line * (static_cast<float>(row_count) + 7.0f) + 4 * kGrid + status))));
-  ImGui::Begin("Quality and parts", nullptr, panels::kPanelFlags);
-  for (HasStatus* tool : context.tools.with<HasStatus>()) tool->draw_status(layout);
-  for (HasList* tool : context.tools.with<HasList>()) tool->draw_list(layout);
-  ImGui::End();
+panels::StatusFacts status_facts(const ToolContext& context) {
+  panels::StatusFacts facts;
+  if (const auto& shown = context.shown.snapshot) {
+    const ipc::SnapshotInfo& info = shown->info();
+    if (const auto* tool = dynamic_cast<const toolkit::HasOptions*>(in_hand(context))) facts.setting = tool->setting_words();
+    for (const auto* tool : context.tools.with<toolkit::TellsLive>())
+      if (facts.pointed.empty()) facts.pointed = tool->live_words();
+    if (facts.pointed.empty()) facts.pointed = context.pointed.words;
+    if (info.selected_nodes > 0)
+      facts.selection = panels::grouped(info.selected_nodes) + (info.selected_nodes == 1 ? " node selected" : " nodes selected");
+    const bool guessed = context.link.document.state() && context.link.document.state()->length_unit_guessed;
+    facts.unit = info.length_unit + (guessed ? "?" : "");
+  }
+  const toolkit::PictureView& view = context.view;
+  if (view.eyes) {
+    facts.lights.push_back(
+        {view.eyes->in_depth ? "eyes" : "flat", view.eyes->eyes, view.eyes->condition != toolkit::EyesFacts::Condition::trouble});
+    if (!view.eyes->mask.empty())
+      facts.lights.push_back({"mask", view.eyes->mask, view.eyes->condition != toolkit::EyesFacts::Condition::trouble});
+  }
+  const bool connected = context.link.connection.connected();
+  facts.lights.push_back({"model server", connected ? "connected" : "not running", connected});
+  return facts;
 }
 
 void cover(ToolContext& context, std::span<const input::MouseBinding> mouse, PanelLayout& layout) {
   switch (context.open.cover) {
     case Cover::none: break;
-    case Cover::help: panels::help_panel(key_bindings(), mouse, layout.picture); break;
+    case Cover::help: panels::help_panel(key_bindings(), mouse, panels::whole(layout.picture)); break;
     case Cover::menu: panels::menu_panel(key_bindings(), layout); break;
     case Cover::warnings:
       if (const auto& shown = context.shown.snapshot)
-        panels::warnings_panel(context.link.document.warnings(), shown->info().document, layout.picture);
+        panels::warnings_panel(context.link.document.warnings(), shown->info().document, panels::whole(layout.picture));
       break;
   }
 }
@@ -96,8 +146,8 @@ void notice(ToolContext& context, PanelLayout& layout) {
   notices::Notices& notices = context.notices;
   if (notices.empty()) return;
   const input::Command list = command_of(EditorCommand::deck_warnings);
-  const panels::NoticePlace place{context.shown.snapshot != nullptr, layout.bottom, input::binding_of(kDocumentKeys, list)};
-  switch (panels::notice_panel({notices.front(), notices.count() - 1}, layout.picture, place)) {
+  const panels::NoticePlace place{layout.bottom, input::binding_of(kDocumentKeys, list)};
+  switch (panels::notice_panel({notices.front(), notices.count() - 1}, layout.view(), place)) {
     case panels::NoticeReply::none: break;
     case panels::NoticeReply::list_warnings: layout.ask(list); break;
     case panels::NoticeReply::read:
@@ -113,27 +163,69 @@ void notice(ToolContext& context, PanelLayout& layout) {
 void PanelArrangement::build(ToolContext& context, std::span<const input::MouseBinding> mouse, PanelLayout& layout) {
   const link::Connection& connection = context.link.connection;
   const link::ServerProgress& progress = connection.progress();
-  const toolkit::OpenPanels& open = context.open;
   const bool document = context.shown.snapshot != nullptr;
-  const AsksQuestions* asking = context.tools.asking();
   const std::string guidance = context.tools.guidance();
-  layout.bottom = static_cast<double>(static_cast<float>(layout.picture.height) - kMargin);
-  layout.top = static_cast<double>(guidance.empty() ? kMargin : kMargin + 3 * ImGui::GetFontSize());
-  covered_width_ = 2.0 * static_cast<double>(panels::side_width(layout.picture) + kMargin);
-  const bool covered = (open.cover != Cover::none && (open.cover != Cover::warnings || document)) || asking != nullptr ||
-                       (open.dialog.owner != nullptr && open.dialog.owner->dialog_covers(open.dialog.kind));
-  if (document && connection.connected() && !covered) {
-    left_panel(context, layout);
-    right_panel(context, layout);
+  layout.places = panels::place_panels(layout.picture, ImGui::GetFontSize(), kept_.now());
+  const panels::Place view = layout.view();
+  layout.bottom = static_cast<double>(view.bottom() - kMargin);
+  layout.top = static_cast<double>(view.y + (guidance.empty() ? kMargin : kMargin + 3 * ImGui::GetFontSize()));
+  layout.items.push_back({"view", "", view});
+  bar(context, layout);
+  rail(context, layout);
+  options(context, layout);
+  build_dock(context, layout);
+  panels::status_panel(status_facts(context), layout);
+  follow_borders(layout);
+  const bool box = context.tools.asking() != nullptr || context.open.dialog.owner != nullptr;
+  if (document && connection.connected())
     for (auto* tool : context.tools.with<toolkit::DrawsOverPicture>()) tool->draw_over_picture(layout);
-  }
-  const bool box = asking != nullptr || open.dialog.owner != nullptr;
   if (!connection.connected() || ((!document || !progress.words().empty()) && !box))
-    panels::state_panel({connection.connected(), connection.socket().string(), progress.words(), progress.fraction()}, layout.picture);
+    panels::state_panel({connection.connected(), connection.socket().string(), progress.words(), progress.fraction()}, view);
   build_box(context, layout);
   cover(context, mouse, layout);
-  if (!guidance.empty() && document) panels::guidance_panel(guidance, layout.picture);
+  if (!guidance.empty() && document) panels::guidance_panel(guidance, view);
   notice(context, layout);
+}
+
+/// Tabs above, the tool in hand below.
+void PanelArrangement::build_dock(ToolContext& context, PanelLayout& layout) {
+  const panels::Places& places = layout.places;
+  if (places.dock.empty()) return;
+  const bool document = context.shown.snapshot != nullptr;
+  panels::begin_docked("Dock", places.upper);
+  if (ImGui::BeginTabBar("tabs", ImGuiTabBarFlags_FittingPolicyScroll)) {
+    const auto tab = [&](const char* name, const std::function<void()>& draw) {
+      const bool shown = ImGui::BeginTabItem(name);
+      panels::note_item(layout, std::string("tab ") + name, shown ? "on" : "off");
+      if (!shown) return;
+      ImGui::BeginChild(name);
+      if (document) draw();
+      ImGui::EndChild();
+      ImGui::EndTabItem();
+    };
+    for (auto* tool : context.tools.with<toolkit::HasTab>()) tab(tool->tab(), [&] { tool->draw_tab(layout); });
+    tab("Model", [&] {
+      panels::model_facts(document_facts(context));
+      panels::history_facts({context.link.document.history_bytes(), context.link.document.history_cap()});
+    });
+    ImGui::EndTabBar();
+  }
+  ImGui::End();
+  panels::begin_docked("In hand", places.lower);
+  ImGui::BeginChild("panel");
+  if (document) {
+    for (auto* tool : context.tools.with<toolkit::HasStatus>()) tool->draw_status(layout);
+    if (toolkit::Tool* tool = in_hand(context); tool != nullptr) tool->draw_panel(layout);
+  }
+  ImGui::EndChild();
+  ImGui::End();
+}
+
+void PanelArrangement::follow_borders(PanelLayout& layout) {
+  if (const auto wanted = panels::borders(kept_.now(), layout))
+    kept_.set(*wanted);
+  else if (!ImGui::IsMouseDown(ImGuiMouseButton_Left))
+    kept_.keep();
 }
 
 /// The question, or else the dialog that is open.
@@ -144,7 +236,7 @@ void PanelArrangement::build_box(ToolContext& context, PanelLayout& layout) {
   const bool opened = std::exchange(shown_dialog_, dialog) != dialog;
   if (dialog.owner != nullptr) return dialog.owner->draw_dialog(dialog.kind, opened, layout);
   if (!context.link.connection.connected() || asking == nullptr) return;
-  if (const auto reply = panels::question_box(*asking->question(), layout.picture))
+  if (const auto reply = panels::question_box(*asking->question(), layout.view()))
     layout.ask([asking, chosen = *reply] { asking->reply(chosen); });
 }
 

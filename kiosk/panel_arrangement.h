@@ -1,10 +1,11 @@
-// Arranges the panels of the tools and the editor: document and tools at the left, quality and parts at the right, messages over the
-// picture.
+// Arranges the panels of the tools and the editor about the view: bar, rail, dock, options and status line. Messages, boxes and what
+// covers the view lie over it.
 #pragma once
 
-#include <span>
+#include <string>
 
 #include "kiosk/input/mouse_layout.h"
+#include "kiosk/kept_arrangement.h"
 #include "kiosk/panels/panel_layout.h"
 #include "kiosk/toolkit/tool_context.h"
 
@@ -12,16 +13,19 @@ namespace prismesh::kiosk {
 
 class PanelArrangement {
  public:
+  explicit PanelArrangement(KeptArrangement kept) : kept_(std::move(kept)) {}
+
   /// Lays all panels out (inside Gui::layout); what the user asked for goes into the layout. `mouse`: what the mouse does, for the help.
   void build(toolkit::ToolContext& context, std::span<const input::MouseBinding> mouse, panels::PanelLayout& layout);
-  /// Pixels of the picture's width that the panels at the sides take.
-  double covered_width() const { return covered_width_; }
 
  private:
+  void build_dock(toolkit::ToolContext& context, panels::PanelLayout& layout);
   void build_box(toolkit::ToolContext& context, panels::PanelLayout& layout);
+  void follow_borders(panels::PanelLayout& layout);
 
   toolkit::OpenPanels::Dialog shown_dialog_;
-  double covered_width_ = 0;
+  KeptArrangement kept_;
+  std::string tab_ = "Parts";
 };
 
 }  // namespace prismesh::kiosk

@@ -1,11 +1,18 @@
 #include "kiosk/screen.h"
 
+#include <algorithm>
 #include <utility>
+
+#include <fmt/format.h>
 
 namespace prismesh::kiosk {
 
-Screen::Screen(panels::Gui gui, std::vector<input::MouseBinding> mouse, Editor& editor)
-    : gui_(std::move(gui)), mouse_(std::move(mouse)), editor_(editor), laid_out_ns_(editor.context().clock.now_ns()) {}
+Screen::Screen(panels::Gui gui, std::vector<input::MouseBinding> mouse, KeptArrangement arrangement, Editor& editor)
+    : gui_(std::move(gui)),
+      mouse_(std::move(mouse)),
+      panels_(std::move(arrangement)),
+      editor_(editor),
+      laid_out_ns_(editor.context().clock.now_ns()) {}
 
 void Screen::set_size(display::PixelSize size) {
   size_ = size;
@@ -13,16 +20,33 @@ void Screen::set_size(display::PixelSize size) {
 }
 
 Result<void> Screen::lay_out() {
-  if (Result<void> type = gui_.set_type(editor_.profile().stereo() ? panels::kStereoType : panels::kFlatType); !type) return type;
+  if (Result<void> type = gui_.set_type(panels::type_for(size_, editor_.profile().stereo())); !type) return type;
   const std::int64_t now = editor_.context().clock.now_ns();
   panels::PanelLayout layout{size_, [this](const input::Command& command) { editor_.panel_command(command); }};
   gui_.layout(size_, static_cast<double>(now - std::exchange(laid_out_ns_, now)) * 1e-9, [&] {
     panels_.build(editor_.context(), mouse_, layout);
     if (pointer_) panels::draw_pointer(pointer_->x(), pointer_->y());
   });
-  editor_.set_covered_width(panels_.covered_width());
+  const panels::Place room = layout.view();
+  editor_.set_room({room.x, room.y, room.right(), room.bottom()});
   for (const std::function<void()>& action : layout.actions) editor_.panel_action(action);
+  if (editor_.context().trace.on()) trace_items(std::move(layout.items));
   return {};
+}
+
+/// Tells which items have come, changed or gone.
+void Screen::trace_items(std::vector<panels::ScreenItem> items) {
+  const notices::Trace& trace = editor_.context().trace;
+  std::ranges::sort(items, {}, &panels::ScreenItem::name);
+  for (const panels::ScreenItem& item : items)
+    if (!std::ranges::binary_search(traced_, item.name, {}, &panels::ScreenItem::name) ||
+        *std::ranges::lower_bound(traced_, item.name, {}, &panels::ScreenItem::name) != item)
+      trace.line(fmt::format("item \"{}\" {:.0f} {:.0f} {:.0f} {:.0f} {}", item.name, item.place.x, item.place.y, item.place.width,
+                             item.place.height, item.state));
+  for (const panels::ScreenItem& item : traced_)
+    if (!std::ranges::binary_search(items, item.name, {}, &panels::ScreenItem::name))
+      trace.line(fmt::format("item \"{}\" gone", item.name));
+  traced_ = std::move(items);
 }
 
 Result<void> Screen::draw(unsigned framebuffer, const std::optional<input::Pixel>& pointer, bool moving) {

@@ -14,7 +14,7 @@ namespace prismesh::kiosk {
 
 class Screen {
  public:
-  Screen(panels::Gui gui, std::vector<input::MouseBinding> mouse, Editor& editor);
+  Screen(panels::Gui gui, std::vector<input::MouseBinding> mouse, KeptArrangement arrangement, Editor& editor);
 
   panels::Gui& gui() { return gui_; }
   void set_size(display::PixelSize size);
@@ -28,6 +28,8 @@ class Screen {
   Result<void> draw(unsigned framebuffer, const std::optional<input::Pixel>& pointer, bool moving);
 
  private:
+  void trace_items(std::vector<panels::ScreenItem> items);
+
   panels::Gui gui_;
   std::vector<input::MouseBinding> mouse_;  ///< what the mouse does, in words
   PanelArrangement panels_;
@@ -35,6 +37,7 @@ class Screen {
   display::PixelSize size_{1, 1};
   std::optional<input::Pixel> pointer_;
   std::int64_t laid_out_ns_ = 0;
+  std::vector<panels::ScreenItem> traced_;
 };
 
 }  // namespace prismesh::kiosk

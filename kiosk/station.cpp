@@ -21,9 +21,9 @@ stereo::FollowOptions follow_options(const stereo::Profile& profile, bool fixed_
   return options;
 }
 
-std::filesystem::path expressions_file() {
+std::filesystem::path state_file(const char* name) {
   const std::filesystem::path folder = toolkit::kiosk_state_folder();
-  return folder.empty() ? folder : folder / "expressions";
+  return folder.empty() ? folder : folder / name;
 }
 
 }  // namespace
@@ -36,8 +36,8 @@ Station::Station(const StationOptions& options, std::unique_ptr<render::Renderer
       devices(ipc::device_socket_path(options.runtime_dir), trace),
       eyes({}, devices, clock, trace),
       renderer(std::move(made)),
-      editor(options.profile, {expressions_file(), options.follows_others}, {link, pen, *renderer, clock, trace}),
-      screen(std::move(gui), options.mouse.in_words(), editor),
+      editor(options.profile, {state_file("expressions"), options.follows_others}, {link, pen, *renderer, clock, trace}),
+      screen(std::move(gui), options.mouse.in_words(), KeptArrangement(state_file("arrangement.toml")), editor),
       fixed_eyes_(options.fixed_eyes_mm.has_value()),
       resting_mm_(options.fixed_eyes_mm.value_or(kRestingEyesMm)),
       panel_latency_ms_(options.panel_latency_ms) {

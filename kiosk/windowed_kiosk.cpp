@@ -20,6 +20,7 @@ namespace {
 
 constexpr std::int64_t kCaretBlinkNs = 300'000'000;  ///< the caret of a text field blinks without any event
 constexpr std::int64_t kWheelRestNs = 250'000'000;   ///< the wheel counts as still this long after its last step
+constexpr std::int64_t kPointerRestNs = 60'000'000;  ///< the pointer rests this long after its last move
 constexpr std::int64_t kForEverNs = -1;
 constexpr std::size_t kManyShells = 200'000;            ///< a picture of more at rest may be too slow while the hand moves something
 constexpr std::int64_t kDaemonTriesNs = 1'000'000'000;  ///< between two attempts to reach a missing device daemon, or the pen's process
@@ -48,6 +49,7 @@ Result<void> WindowedKiosk::run() {
     rest_traced_ = rest_traced_ && events->empty();
     if (Result<void> turned = station_.turn(); !turned) return turned;
     if (const auto& model = station_.link.document.snapshot()) watch_.draws(model->shell_count());
+    point();
     const Result<bool> drawn = beat();
     if (!drawn) return fail(drawn.error());
     if (*drawn) watch_.shown();
@@ -72,11 +74,15 @@ Result<bool> WindowedKiosk::beat() {
 
 Result<void> WindowedKiosk::take(const display::WindowEvent& event) {
   if (const auto* moved = std::get_if<display::PointerMoved>(&event)) {
+    // What was pressed is known before the pointer has left it.
+    if (Result<void> settled = settle(); !settled) return settled;
     const bool was_on_panel = gestures_.position() && station_.screen.gui().on_panel(gestures_.position()->x(), gestures_.position()->y());
     station_.screen.gui().feed(event);
+    edge_fed_ = station_.screen.gui().holds_pointer();  // the way up to the release counts
     gestures(gestures_.moved(*moved));
     // Panels answer to the pointer, and some pictures carry it.
     if (was_on_panel || station_.screen.gui().on_panel(moved->x, moved->y) || draws_pointer()) dirty_ = true;
+    rests_ns_ = station_.clock.now_ns() + kPointerRestNs;
     return {};
   }
   if (const auto* button = std::get_if<display::ButtonChanged>(&event)) return take_button(*button);
@@ -133,6 +139,10 @@ Result<void> WindowedKiosk::take_key(const display::KeyChanged& event) {
   // While a path is typed the keyboard is the text field's.
   if (station_.editor.dialog_open() ? !cancels : station_.screen.gui().wants_keys()) return {};
   gestures_.forget_click();
+  if (station_.screen.gui().popup_open()) {
+    station_.screen.gui().close_popups();
+    if (cancels) return {};
+  }
   if (cancels) gestures_.cancel();
   do_command(binding->command);
   swallow_text_ = station_.editor.dialog_open();
@@ -169,6 +179,13 @@ void WindowedKiosk::do_command(const input::Command& command) {
 std::optional<input::Pixel> WindowedKiosk::pointer_on_picture() const {
   const std::optional<input::Pixel> at = gestures_.position();
   return at && !station_.screen.gui().on_panel(at->x(), at->y()) ? at : std::nullopt;
+}
+
+/// The pointer has rested: what is under it is told.
+void WindowedKiosk::point() {
+  if (!rests_ns_ || moving() || station_.clock.now_ns() < *rests_ns_) return;
+  rests_ns_.reset();
+  station_.editor.point_at(pointer_on_picture());
 }
 
 Result<void> WindowedKiosk::settle() {
@@ -217,6 +234,7 @@ std::int64_t WindowedKiosk::patience_ns() const {
   if (stale() || station_.eyes.watches()) patience = shorter(patience, std::max<std::int64_t>(0, station_.eyes.next_look_ns() - now));
   if (station_.screen.gui().wants_keys()) patience = shorter(patience, kCaretBlinkNs);
   if (const auto report = watch_.next_ns()) patience = shorter(patience, std::max<std::int64_t>(0, *report - now));
+  if (rests_ns_ && !gestures_.dragging()) patience = shorter(patience, std::max<std::int64_t>(0, *rests_ns_ - now));
   if (shown_moving_ && !gestures_.dragging()) patience = shorter(patience, std::max<std::int64_t>(0, wheel_rest_ns_ - now));
   return patience;
 }

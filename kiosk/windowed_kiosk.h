@@ -24,6 +24,7 @@ class WindowedKiosk {
   Result<void> give_field_the_keyboard();
   void do_command(const input::Command& command);
   Result<void> settle();
+  void point();
   void find_place() { station_.place(window_.monitor(), window_.position()); }
   /// The display's own pointer isn't woven, and some displays have none.
   bool draws_pointer() const { return station_.editor.profile().stereo() || !window_.has_pointer(); }
@@ -53,6 +54,7 @@ class WindowedKiosk {
   bool fullscreen_ = false;
   bool shown_moving_ = false;  ///< the last picture was drawn for speed
   std::int64_t wheel_rest_ns_ = 0;
+  std::optional<std::int64_t> rests_ns_;  ///< when the pointer will have rested; nothing: it has been looked at
   std::uint64_t shown_changes_ = 0;
   std::uint64_t pictures_ = 0;
   std::uint64_t presses_ = 0, releases_ = 0;  ///< of buttons; a step of the wheel is a press

@@ -18,20 +18,12 @@ std::string guessed(const std::string& value, bool is_guess) { return is_guess ?
 
 }  // namespace
 
-void document_head(const DocumentFacts& document) {
-  const float width = ImGui::GetContentRegionAvail().x;
-  const std::filesystem::path path(document.path);
-  ImGui::PushFont(title_font());
-  elided_text(printable(path.filename().string()), width);
-  ImGui::PopFont();
+void model_facts(const DocumentFacts& document) {
   ImGui::PushFont(small_font());
   ImGui::PushStyleColor(ImGuiCol_Text, kFaintInk);
-  elided_text(printable(path.parent_path().string()), width);
+  elided_text(printable(std::filesystem::path(document.path).parent_path().string()), ImGui::GetContentRegionAvail().x);
   ImGui::PopStyleColor();
-  ImGui::TextUnformatted(document.changed ? "unsaved edits" : "no unsaved edits");
   ImGui::PopFont();
-
-  section("Model");
   fact("shells", grouped(document.shells));
   fact("nodes", grouped(document.nodes));
   fact("parts", grouped(document.parts));
@@ -40,20 +32,11 @@ void document_head(const DocumentFacts& document) {
   fact("target size",
        guessed(document.target_size < document.largest_target_size ? readable(document.target_size, 3) + " to " + largest : largest,
                document.target_size_guessed));
-  fact("generation", grouped(document.generation));
 }
 
-void history_section(const HistoryFacts& history) {
+void history_facts(const HistoryFacts& history) {
   if (history.cap == 0) return;
-  section("History");
   fact("kept for undo", fmt::format("{:.1f} of {} MB", static_cast<double>(history.bytes) / kMegabyte, history.cap / kMegabyte));
-}
-
-void document_foot() {
-  ImGui::Dummy(ImVec2(0, kGrid / 2));
-  ImGui::PushFont(small_font());
-  ImGui::TextDisabled("F1 keys   F10 menu   J quality");
-  ImGui::PopFont();
 }
 
 }  // namespace prismesh::kiosk::panels

@@ -1,14 +1,13 @@
-// The sections of the document's panel that belong to no tool. To be called inside Gui::layout.
+// What the tab "Model" shows. To be called inside Gui::layout.
 #pragma once
 
 #include "kiosk/panels/panel_facts.h"
 
 namespace prismesh::kiosk::panels {
 
-/// The deck's name, and the model's size and units.
-void document_head(const DocumentFacts& document);
-void history_section(const HistoryFacts& history);
-/// The keys that open more.
-void document_foot();
+/// The deck's folder, and the model's size and units.
+void model_facts(const DocumentFacts& document);
+/// What the states kept for undo take.
+void history_facts(const HistoryFacts& history);
 
 }  // namespace prismesh::kiosk::panels

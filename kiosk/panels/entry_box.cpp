@@ -56,11 +56,9 @@ void keep_keyboard(EntryState& entry, bool opened) {
 
 }  // namespace
 
-void begin_low(const char* name, display::PixelSize picture, float width) {
-  const float free = static_cast<float>(picture.width) - 2 * side_width(picture) - 4 * kMargin;
-  ImGui::SetNextWindowPos(ImVec2(std::floor(static_cast<float>(picture.width) / 2), static_cast<float>(picture.height) - 8 * kGrid), 0,
-                          ImVec2(0.5f, 1));
-  ImGui::SetNextWindowSize(ImVec2(on_grid(std::min(width, free)), 0));
+void begin_low(const char* name, const Place& room, float width) {
+  ImGui::SetNextWindowPos(ImVec2(std::floor(room.x + room.width / 2), room.bottom() - kMargin), 0, ImVec2(0.5f, 1));
+  ImGui::SetNextWindowSize(ImVec2(std::min(width, room.width - 2 * kMargin), 0));
   ImGui::Begin(name, nullptr, kPanelFlags | ImGuiWindowFlags_AlwaysAutoResize);
 }
 

@@ -19,7 +19,7 @@ struct EntryState {
 };
 
 /// A box below the model, between the panels at the sides.
-void begin_low(const char* name, display::PixelSize picture, float width);
+void begin_low(const char* name, const Place& room, float width);
 /// A field as wide as the box, which takes the keyboard whenever nothing else has it. Up and Down bring earlier entries back. True: Enter
 /// was pressed in it. `opened`: the box wasn't there the last time.
 bool entry_field(const char* name, const std::vector<std::string>& earlier, bool opened, EntryState& entry);

@@ -1,6 +1,7 @@
 #include "kiosk/panels/gui.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -58,6 +59,11 @@ void set_style() {
   colour[ImGuiCol_TextDisabled] = ImGui::ColorConvertU32ToFloat4(kFaintInk);
   colour[ImGuiCol_WindowBg] = ImGui::ColorConvertU32ToFloat4(kPanelColour);
   colour[ImGuiCol_ChildBg] = ImVec4(0, 0, 0, 0);
+  colour[ImGuiCol_PopupBg] = colour[ImGuiCol_MenuBarBg] = colour[ImGuiCol_WindowBg];
+  colour[ImGuiCol_Border] = ImGui::ColorConvertU32ToFloat4(kBorderColour);
+  colour[ImGuiCol_Tab] = colour[ImGuiCol_TabUnfocused] = ImVec4(0, 0, 0, 0);
+  colour[ImGuiCol_TabHovered] = ImVec4(1, 1, 1, 0.18f);
+  colour[ImGuiCol_TabActive] = colour[ImGuiCol_TabUnfocusedActive] = ImVec4(1, 1, 1, 0.14f);
   colour[ImGuiCol_FrameBg] = ImVec4(1, 1, 1, 0.08f);
   colour[ImGuiCol_FrameBgHovered] = ImVec4(1, 1, 1, 0.13f);
   colour[ImGuiCol_FrameBgActive] = ImVec4(1, 1, 1, 0.16f);
@@ -140,6 +146,16 @@ struct Gui::Impl {
   }
 };
 
+TypeSizes type_for(display::PixelSize picture, bool stereo) {
+  constexpr double kUsualWidth = 1920, kUsualHeight = 1080;
+  const double scale = std::min(picture.width / kUsualWidth, picture.height / kUsualHeight);
+  const TypeSizes usual = stereo ? kStereoType : kFlatType;
+  // Quarters, so that a window that is resized doesn't make a font of each size.
+  const double quarters = std::clamp(std::floor(4 * scale), stereo ? 3.0 : 4.0, 12.0);
+  const auto sized = [&](float size) { return static_cast<float>(std::round(static_cast<double>(size) * quarters / 4)); };
+  return {sized(usual.small), sized(usual.body), sized(usual.title)};
+}
+
 Gui::Gui(std::unique_ptr<Impl> state) : impl_(std::move(state)) {}
 Gui::Gui(Gui&&) noexcept = default;
 Gui& Gui::operator=(Gui&&) noexcept = default;
@@ -182,7 +198,14 @@ const TypeSizes& Gui::type() const { return impl_->type; }
 
 void Gui::feed(const display::WindowEvent& event) { std::visit(Feed{}, event); }
 
+bool Gui::popup_open() const { return !impl_->context->OpenPopupStack.empty(); }
+
+void Gui::close_popups() {
+  if (popup_open()) ImGui::ClosePopupToLevel(0, true);
+}
+
 bool Gui::on_panel(double x, double y) const {
+  if (popup_open()) return true;
   for (const ImGuiWindow* window : impl_->context->Windows) {
     // NoInputs would be wrong: it holds the flags of the keyboard's navigation too, which no panel has.
     if (!window->WasActive || window->Hidden || (window->Flags & ImGuiWindowFlags_NoMouseInputs) != 0) continue;
@@ -190,6 +213,8 @@ bool Gui::on_panel(double x, double y) const {
   }
   return false;
 }
+
+bool Gui::holds_pointer() const { return ImGui::IsAnyItemActive() && ImGui::IsAnyMouseDown(); }
 
 bool Gui::wants_keys() const { return ImGui::GetIO().WantTextInput; }
 

@@ -23,6 +23,9 @@ struct TypeSizes {
 /// Sizes for an ordinary picture and for one whose eyes see half the columns each.
 inline constexpr TypeSizes kFlatType{14, 16, 21};
 inline constexpr TypeSizes kStereoType{24, 24, 30};
+/// The sizes for a picture: larger on a display of many rows, where the eye stands farther away in pixels, and for stereo no larger than a
+/// low picture has room for.
+TypeSizes type_for(display::PixelSize picture, bool stereo);
 
 class Gui {
  public:
@@ -38,6 +41,11 @@ class Gui {
   void feed(const display::WindowEvent& event);
   /// Whether a pixel lay on a panel when they were last laid out.
   bool on_panel(double x, double y) const;
+  /// A menu or list is open over the panels: it has the pointer wherever that is.
+  bool popup_open() const;
+  void close_popups();
+  /// Something on a panel is held with the pointer.
+  bool holds_pointer() const;
   /// A text field has the keyboard.
   bool wants_keys() const;
 
@@ -68,6 +76,9 @@ inline constexpr unsigned kInformationColour = 0xffecb468;
 inline constexpr unsigned kActiveColour = 0xff7ad65a;
 /// What panels stand on: opaque, so that words keep a contrast of 4.5 at least (WCAG 2.1, 1.4.3) whatever the model's colours are.
 inline constexpr unsigned kPanelColour = 0xff211f1c;
+
+/// The line between two panels.
+inline constexpr unsigned kBorderColour = 0xff3c3a37;
 
 /// The grid that panels keep to, in pixels.
 inline constexpr float kGrid = 8;

@@ -36,11 +36,11 @@ void binding_list(const char* title, const Bindings& bindings, const Left& left,
 
 }  // namespace
 
-void help_panel(std::span<const KeyBinding> keys, std::span<const input::MouseBinding> mouse, display::PixelSize picture) {
-  const float widest = static_cast<float>(picture.width) - 2 * kMargin, highest = static_cast<float>(picture.height) - 2 * kMargin;
+void help_panel(std::span<const KeyBinding> keys, std::span<const input::MouseBinding> mouse, const Place& room) {
+  const float widest = room.width - 2 * kMargin, highest = room.height - 2 * kMargin;
   const float width = on_grid(std::min(ImGui::GetFontSize() * 76, widest)), half = (width - 6 * kGrid) / 2;
   ImGui::SetNextWindowSizeConstraints(ImVec2(width, 0), ImVec2(width, highest));
-  begin_centred("Keys and mouse", picture, width);
+  begin_centred("Keys and mouse", room, width);
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(kGrid, kGrid / 2));
   const float top = ImGui::GetCursorPosY();
   binding_list(
@@ -56,11 +56,11 @@ void help_panel(std::span<const KeyBinding> keys, std::span<const input::MouseBi
 
 void menu_panel(std::span<const KeyBinding> all, PanelLayout& layout) {
   constexpr int kColumns = 3;
-  const float widest = static_cast<float>(layout.picture.width) - 2 * kMargin,
-              highest = static_cast<float>(layout.picture.height) - 2 * kMargin;
+  const Place room = whole(layout.picture);
+  const float widest = room.width - 2 * kMargin, highest = room.height - 2 * kMargin;
   const float width = on_grid(std::min(ImGui::GetFontSize() * 92, widest));
   ImGui::SetNextWindowSizeConstraints(ImVec2(width, 0), ImVec2(width, highest));
-  begin_centred("Menu", layout.picture, width);
+  begin_centred("Menu", room, width);
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(kGrid, kGrid / 4));
   ImGui::Columns(kColumns, nullptr, false);
   const std::size_t lines = all.size() + 2 * input::kMenuNames.size();
@@ -79,16 +79,16 @@ void menu_panel(std::span<const KeyBinding> all, PanelLayout& layout) {
     ImGui::PopFont();
     for (const KeyBinding& binding : all) {
       if (static_cast<std::size_t>(binding.menu) != m) continue;
-      const float left = ImGui::GetCursorPosX(), room = ImGui::GetColumnWidth() - 2 * kGrid;
+      const float left = ImGui::GetCursorPosX(), free = ImGui::GetColumnWidth() - 2 * kGrid;
       const float key_width = ImGui::CalcTextSize(binding.label.data()).x;
       ImGui::PushID(static_cast<int>(&binding - all.data()));
-      if (ImGui::Selectable("##entry", false, 0, ImVec2(room, 0))) layout.ask(binding.command);
+      if (ImGui::Selectable("##entry", false, 0, ImVec2(free, 0))) layout.ask(binding.command);
       ImGui::PopID();
       ImGui::SameLine();
       ImGui::SetCursorPosX(left);
-      elided_text(std::string(binding.meaning), room - key_width - 2 * kGrid);
+      elided_text(std::string(binding.meaning), free - key_width - 2 * kGrid);
       ImGui::SameLine();
-      ImGui::SetCursorPosX(left + room - key_width);
+      ImGui::SetCursorPosX(left + free - key_width);
       ImGui::TextDisabled("%s", binding.label.data());
     }
     ImGui::Dummy(ImVec2(0, kGrid));

@@ -10,7 +10,7 @@
 
 namespace prismesh::kiosk::panels {
 
-void help_panel(std::span<const input::KeyBinding> keys, std::span<const input::MouseBinding> mouse, display::PixelSize picture);
+void help_panel(std::span<const input::KeyBinding> keys, std::span<const input::MouseBinding> mouse, const Place& room);
 /// All commands in columns, menu by menu; a click does one.
 void menu_panel(std::span<const input::KeyBinding> all, PanelLayout& layout);
 

@@ -49,17 +49,19 @@ void section(const char* title) {
   ImGui::TextUnformatted(title);
 }
 
-void begin_left(const char* name, display::PixelSize picture) {
-  const float width = side_width(picture), highest = std::max(kMargin, static_cast<float>(picture.height) - 2 * kMargin);
-  ImGui::SetNextWindowPos(ImVec2(kMargin, kMargin));
-  ImGui::SetNextWindowSizeConstraints(ImVec2(width, 0), ImVec2(width, highest));
-  ImGui::Begin(name, nullptr, (kPanelFlags & ~ImGuiWindowFlags_NoScrollbar) | ImGuiWindowFlags_AlwaysAutoResize);
+void begin_docked(const char* name, const Place& place, ImGuiWindowFlags flags) {
+  ImGui::SetNextWindowPos(ImVec2(place.x, place.y));
+  ImGui::SetNextWindowSize(ImVec2(place.width, place.height));
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0);
+  ImGui::Begin(name, nullptr, kPanelFlags | ImGuiWindowFlags_NoBringToFrontOnFocus | flags);
+  ImGui::PopStyleVar();
+  // The border that panels side by side need to be told apart.
+  ImGui::GetWindowDrawList()->AddRect(ImVec2(place.x, place.y), ImVec2(place.right(), place.bottom()), kBorderColour);
 }
 
-void begin_centred(const char* name, display::PixelSize picture, float width) {
-  ImGui::SetNextWindowPos(ImVec2(std::floor(static_cast<float>(picture.width) / 2), std::floor(static_cast<float>(picture.height) / 2)), 0,
-                          ImVec2(0.5f, 0.5f));
-  ImGui::SetNextWindowSize(ImVec2(on_grid(std::min(width, static_cast<float>(picture.width) - 2 * kMargin)), 0));
+void begin_centred(const char* name, const Place& room, float width) {
+  ImGui::SetNextWindowPos(ImVec2(std::floor(room.x + room.width / 2), std::floor(room.y + room.height / 2)), 0, ImVec2(0.5f, 0.5f));
+  ImGui::SetNextWindowSize(ImVec2(std::min(width, room.width - 2 * kMargin), 0));
   ImGui::Begin(name, nullptr, kPanelFlags | ImGuiWindowFlags_AlwaysAutoResize);
 }
 

@@ -8,6 +8,7 @@
 
 #include "kiosk/display/window.h"
 #include "kiosk/panels/gui.h"
+#include "kiosk/panels/places.h"
 
 namespace prismesh::kiosk::panels {
 
@@ -16,12 +17,6 @@ inline constexpr ImGuiWindowFlags kPanelFlags = ImGuiWindowFlags_NoDecoration | 
 
 /// A grid multiple near `value`.
 inline float on_grid(float value) { return kGrid * std::round(value / kGrid); }
-
-/// Width of a side panel: twenty characters of the body's size, never more than a third of the picture.
-inline float side_width(display::PixelSize picture) {
-  const float wanted = ImGui::GetFontSize() * 18.5f, most = static_cast<float>(picture.width) * 0.3f;
-  return on_grid(wanted < most ? wanted : most);
-}
 inline constexpr float kMargin = 2 * kGrid;
 
 /// A signal: its meaning in shape and colour. Warn is a triangle, fail a square, everything else a disc.
@@ -36,10 +31,10 @@ void fact(const char* label, const std::string& value);
 
 void section(const char* title);
 
-/// The panel at the left, as high as its content but within the picture: then it scrolls.
-void begin_left(const char* name, display::PixelSize picture);
+/// A panel that fills its place, opaque and without rounded corners.
+void begin_docked(const char* name, const Place& place, ImGuiWindowFlags flags = 0);
 
-/// A panel in the middle of the picture, as high as its content.
-void begin_centred(const char* name, display::PixelSize picture, float width);
+/// A panel in the middle of a room, as high as its content.
+void begin_centred(const char* name, const Place& room, float width);
 
 }  // namespace prismesh::kiosk::panels

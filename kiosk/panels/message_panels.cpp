@@ -12,12 +12,10 @@ namespace prismesh::kiosk::panels {
 
 using notices::Notice;
 
-NoticeReply notice_panel(const NoticeFacts& facts, display::PixelSize picture, const NoticePlace& place) {
+NoticeReply notice_panel(const NoticeFacts& facts, const Place& room, const NoticePlace& place) {
   NoticeReply reply = NoticeReply::none;
-  const float side = place.between_panels ? side_width(picture) + 2 * kMargin : kMargin;
-  const float width = static_cast<float>(picture.width) - 2 * side;
-  ImGui::SetNextWindowPos(ImVec2(side, static_cast<float>(place.bottom)), 0, ImVec2(0, 1));
-  ImGui::SetNextWindowSize(ImVec2(width, 0));
+  ImGui::SetNextWindowPos(ImVec2(room.x + kMargin, static_cast<float>(place.bottom)), 0, ImVec2(0, 1));
+  ImGui::SetNextWindowSize(ImVec2(room.width - 2 * kMargin, 0));
   ImGui::Begin("Notice", nullptr, kPanelFlags | ImGuiWindowFlags_AlwaysAutoResize);
   const Notice::Kind kind = facts.notice.kind;
   draw_signal(kind == Notice::Kind::error     ? Signal::fail
@@ -48,8 +46,8 @@ NoticeReply notice_panel(const NoticeFacts& facts, display::PixelSize picture, c
   return reply;
 }
 
-void state_panel(const StateFacts& facts, display::PixelSize picture) {
-  begin_centred("State", picture, ImGui::GetFontSize() * 32);
+void state_panel(const StateFacts& facts, const Place& room) {
+  begin_centred("State", room, ImGui::GetFontSize() * 32);
   if (!facts.connected) {
     ImGui::PushFont(title_font());
     ImGui::TextWrapped("The model server is not running - trying again");
@@ -71,8 +69,8 @@ void state_panel(const StateFacts& facts, display::PixelSize picture) {
   ImGui::End();
 }
 
-void guidance_panel(const std::string& guidance, display::PixelSize picture) {
-  ImGui::SetNextWindowPos(ImVec2(std::floor(static_cast<float>(picture.width) / 2), kMargin), 0, ImVec2(0.5f, 0));
+void guidance_panel(const std::string& guidance, const Place& room) {
+  ImGui::SetNextWindowPos(ImVec2(std::floor(room.x + room.width / 2), room.y + kMargin), 0, ImVec2(0.5f, 0));
   ImGui::Begin("Guidance", nullptr, kPanelFlags | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoInputs);
   draw_signal(Signal::information, ImGui::GetFontSize() * 0.75f);
   ImGui::SameLine();

@@ -6,21 +6,21 @@
 
 #include "kiosk/display/window.h"
 #include "kiosk/panels/panel_facts.h"
+#include "kiosk/panels/places.h"
 #include "kiosk/panels/widgets.h"
 
 namespace prismesh::kiosk::panels {
 
 struct NoticePlace {
-  bool between_panels = false;             ///< there are panels at the sides
   double bottom = 0;                       ///< pixels: the lower edge
   const input::KeyBinding& list_warnings;  ///< for the hint of its button
 };
 enum class NoticeReply : std::uint8_t { none, read, list_warnings };
-NoticeReply notice_panel(const NoticeFacts& facts, display::PixelSize picture, const NoticePlace& place);
+NoticeReply notice_panel(const NoticeFacts& facts, const Place& room, const NoticePlace& place);
 
-void state_panel(const StateFacts& facts, display::PixelSize picture);
+void state_panel(const StateFacts& facts, const Place& room);
 
 /// At the top, where it is in nobody's way.
-void guidance_panel(const std::string& guidance, display::PixelSize picture);
+void guidance_panel(const std::string& guidance, const Place& room);
 
 }  // namespace prismesh::kiosk::panels

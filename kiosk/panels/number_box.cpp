@@ -6,8 +6,8 @@
 
 namespace prismesh::kiosk::panels {
 
-std::optional<std::string> number_box(const NumberFacts& facts, display::PixelSize picture, bool opened, EntryState& entry) {
-  begin_low("Number", picture, ImGui::GetFontSize() * 24);
+std::optional<std::string> number_box(const NumberFacts& facts, const Place& room, bool opened, EntryState& entry) {
+  begin_low("Number", room, ImGui::GetFontSize() * 24);
   if (opened) {
     entry = EntryState{};
     entry.text = facts.begun;

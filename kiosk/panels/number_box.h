@@ -16,6 +16,6 @@ struct NumberFacts {
 };
 
 /// Lays the box out (inside Gui::layout). `opened`: it wasn't there the last time. Returns the text that was entered.
-std::optional<std::string> number_box(const NumberFacts& facts, display::PixelSize picture, bool opened, EntryState& entry);
+std::optional<std::string> number_box(const NumberFacts& facts, const Place& room, bool opened, EntryState& entry);
 
 }  // namespace prismesh::kiosk::panels

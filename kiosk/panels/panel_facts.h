@@ -13,12 +13,10 @@ namespace prismesh::kiosk::panels {
 struct DocumentFacts {
   std::string path;
   std::uint64_t nodes = 0, shells = 0, parts = 0;
-  std::uint64_t generation = 0;
   std::string length_unit;
   bool length_unit_guessed = false;
   double target_size = 0, largest_target_size = 0;  ///< the range over the parts with shells
   bool target_size_guessed = false;
-  bool changed = false;
 };
 
 /// What the states kept for undo take and may take, bytes; 0: not known.

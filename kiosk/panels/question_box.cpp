@@ -23,9 +23,9 @@ void path_list(const Question::List& list) {
 
 }  // namespace
 
-std::optional<Reply> question_box(const Question& question, display::PixelSize picture) {
+std::optional<Reply> question_box(const Question& question, const Place& room) {
   std::optional<Reply> reply;
-  begin_centred("Question", picture, ImGui::GetFontSize() * 40);
+  begin_centred("Question", room, ImGui::GetFontSize() * 40);
   ImGui::PushFont(title_font());
   ImGui::TextWrapped("%s", printable(question.title).c_str());
   ImGui::PopFont();

@@ -3,12 +3,12 @@
 
 #include <optional>
 
-#include "kiosk/display/window.h"
+#include "kiosk/panels/places.h"
 #include "kiosk/panels/question.h"
 
 namespace prismesh::kiosk::panels {
 
 /// Lays the box out (inside Gui::layout). Returns the reply that was chosen.
-std::optional<Reply> question_box(const Question& question, display::PixelSize picture);
+std::optional<Reply> question_box(const Question& question, const Place& room);
 
 }  // namespace prismesh::kiosk::panels

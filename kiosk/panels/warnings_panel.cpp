@@ -50,8 +50,8 @@ void warning_row(const ToldWarning& warning, const Columns& columns) {
 
 }  // namespace
 
-void warnings_panel(std::span<const ToldWarning> warnings, const std::string& deck, display::PixelSize picture) {
-  begin_centred("Warnings", picture, ImGui::GetFontSize() * 56);
+void warnings_panel(std::span<const ToldWarning> warnings, const std::string& deck, const Place& room) {
+  begin_centred("Warnings", room, ImGui::GetFontSize() * 56);
   ImGui::PushFont(title_font());
   elided_text("Warnings of " + printable(std::filesystem::path(deck).filename().string()), ImGui::GetContentRegionAvail().x);
   ImGui::PopFont();
@@ -64,7 +64,7 @@ void warnings_panel(std::span<const ToldWarning> warnings, const std::string& de
   columns.text = ImGui::GetContentRegionAvail().x - columns.sign - 2 * kGrid;
   float height = 0;
   for (const ToldWarning& warning : warnings) height += row_height(warning, columns);
-  const float free = static_cast<float>(picture.height) - 2 * kMargin - ImGui::GetCursorPosY() - 3 * kGrid;
+  const float free = room.height - 2 * kMargin - ImGui::GetCursorPosY() - 3 * kGrid;
   if (height > 0) {
     ImGui::BeginChild("list", ImVec2(0, std::max(4 * kGrid, std::min(height, free))));
     for (const ToldWarning& warning : warnings) warning_row(warning, columns);

@@ -4,12 +4,12 @@
 #include <span>
 #include <string>
 
-#include "kiosk/display/window.h"
 #include "kiosk/notices/deck_warnings.h"
+#include "kiosk/panels/places.h"
 
 namespace prismesh::kiosk::panels {
 
 /// Lays the list out (inside Gui::layout). `deck`: its path.
-void warnings_panel(std::span<const notices::ToldWarning> warnings, const std::string& deck, display::PixelSize picture);
+void warnings_panel(std::span<const notices::ToldWarning> warnings, const std::string& deck, const Place& room);
 
 }  // namespace prismesh::kiosk::panels

@@ -1,6 +1,7 @@
 #include "kiosk/panels/widgets.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace prismesh::kiosk::panels {
 
@@ -21,12 +22,19 @@ void hint(const input::KeyBinding& binding) {
   ImGui::SetTooltip("%s (%s)", std::string(binding.meaning).c_str(), std::string(binding.label).c_str());
 }
 
+void note_item(PanelLayout& layout, std::string name, std::string state) {
+  const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+  layout.items.push_back({std::move(name), std::move(state), {low.x, low.y, high.x - low.x, high.y - low.y}});
+}
+
 void check(const char* label, bool value, const input::Command& toggle, PanelLayout& layout) {
   bool now = value;
   if (ImGui::Checkbox(label, &now)) layout.ask(toggle);
 }
 
 void panel_title(const char* title, const char* line) {
+  ImGui::Dummy(ImVec2(0, kGrid / 2));
+  ImGui::Separator();
   ImGui::PushFont(title_font());
   ImGui::TextUnformatted(title);
   ImGui::PopFont();

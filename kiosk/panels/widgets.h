@@ -16,7 +16,10 @@ void setting(const char* label, const std::string& value, const input::KeyBindin
 void hint(const input::KeyBinding& binding);
 /// A box with a tick that a command turns over.
 void check(const char* label, bool value, const input::Command& toggle, PanelLayout& layout);
-/// Title of a panel at the left, and a line in small type.
+/// Title of a panel, and a line in small type.
 void panel_title(const char* title, const char* line);
+
+/// Notes the item before for programs that watch.
+void note_item(PanelLayout& layout, std::string name, std::string state);
 
 }  // namespace prismesh::kiosk::panels

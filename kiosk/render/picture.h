@@ -87,11 +87,12 @@ struct PanelPlace {
 };
 
 enum class Pane : std::uint8_t { model, other };
-/// Two views in a picture: the model, and beside it the one given to Renderer::set_other, seen from the same side. The border is in the
-/// middle of the picture for both eyes, and each view is shifted from the middle by the same distance.
+/// Two views in a picture: the model, and beside it the one given to Renderer::set_other, seen from the same side. The border is at
+/// the same place for both eyes, and each view is shifted from it by the same distance.
 struct TwoViews {
   bool model_on_right = true;
-  double shift = 0.25;  ///< of each view from the middle, as a share of the picture's width
+  double shift = 0.25;  ///< of each view from the border, as a share of the picture's width
+  double border = 0.5;  ///< from the picture's left edge, as a share of its width
   bool operator==(const TwoViews&) const = default;
 
   double shift_mm(bool right, double screen_width_mm) const { return (right ? shift : -shift) * screen_width_mm; }

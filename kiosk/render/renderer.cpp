@@ -252,7 +252,7 @@ void Renderer::Impl::draw_views(const Picture& picture, const EyeView& eye, int 
       half.marked.reset();
       half.shadows = false;
     }
-    const double middle = 0.5 * width;
+    const double middle = picture.two_views->border * width;
     scene.begin_pane(eye, right ? middle + kHalfGapPixels : 0, right ? width : middle - kHalfGapPixels);
     const auto at = static_cast<std::size_t>(pane);
     ModelLayer& shown = pane == Pane::model ? layer : other_layer;

@@ -29,6 +29,9 @@ double max_depth_scale(const Depths& depths, const ComfortBox& limits) {
   return scale;
 }
 
+/// mm from the screen's middle.
+Eigen::Vector2d place_of_pivot(const View& view) { return view.middle_mm + view.pan_mm; }
+
 std::array<Vec3, 8> corners_of(const Box& box) {
   std::array<Vec3, 8> corners;
   for (std::size_t i = 0; i < 8; ++i)
@@ -71,17 +74,19 @@ Eigen::Matrix4d screen_from_deck(const View& view) {
   linear.row(2) *= scale;
   Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
   matrix.topLeftCorner<3, 3>() = linear;
-  matrix.topRightCorner<3, 1>() = Vec3(view.pan_mm.x(), view.pan_mm.y(), view.before_mm * scale) - linear * view.pivot;
+  matrix.topRightCorner<3, 1>() = Vec3(place_of_pivot(view).x(), place_of_pivot(view).y(), view.before_mm * scale) - linear * view.pivot;
   return matrix;
 }
 
 Vec3 to_screen(const View& view, const Vec3& deck_point) {
   const Vec3 turned = view.rotation * (deck_point - view.pivot) * view.mm_per_unit;
-  return {turned.x() + view.pan_mm.x(), turned.y() + view.pan_mm.y(), (turned.z() + view.before_mm) * depth_scale(view)};
+  const Eigen::Vector2d at = place_of_pivot(view);
+  return {turned.x() + at.x(), turned.y() + at.y(), (turned.z() + view.before_mm) * depth_scale(view)};
 }
 
 Vec3 to_deck(const View& view, const Vec3& screen_mm) {
-  const Vec3 turned(screen_mm.x() - view.pan_mm.x(), screen_mm.y() - view.pan_mm.y(), screen_mm.z() / depth_scale(view) - view.before_mm);
+  const Eigen::Vector2d at = place_of_pivot(view);
+  const Vec3 turned(screen_mm.x() - at.x(), screen_mm.y() - at.y(), screen_mm.z() / depth_scale(view) - view.before_mm);
   return view.pivot + view.rotation.conjugate() * (turned / view.mm_per_unit);
 }
 
@@ -114,7 +119,8 @@ View pan(const View& view, const Eigen::Vector2d& by_mm) {
 View zoom(const View& view, double factor, const Eigen::Vector2d& at_mm) {
   View scaled = view;
   scaled.mm_per_unit *= factor;
-  scaled.pan_mm = at_mm + (view.pan_mm - at_mm) * factor;
+  const Eigen::Vector2d from_middle = at_mm - view.middle_mm;
+  scaled.pan_mm = from_middle + (view.pan_mm - from_middle) * factor;
   scaled.before_mm *= factor;  // what is in the screen's plane stays there
   return scaled;
 }
@@ -167,7 +173,7 @@ View fit_turned(const View& view, const Box& turned, const Eigen::Vector2d& scre
     }
     const double too_large = ((high - low).array() / (kFilled * screen_mm).array()).maxCoeff();
     if (!(too_large > 0)) break;
-    fitted.pan_mm -= 0.5 * (low + high);
+    fitted.pan_mm -= 0.5 * (low + high) - view.middle_mm;
     fitted.pan_mm /= too_large;
     fitted.mm_per_unit /= too_large;
   }

@@ -56,7 +56,8 @@ struct View {
   Vec3 pivot = Vec3::Zero();                                     ///< deck coordinates; rotations turn about it
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  ///< deck axes to screen axes
   double mm_per_unit = 1;                                        ///< mm on the screen for one deck length unit
-  Eigen::Vector2d pan_mm = Eigen::Vector2d::Zero();              ///< position of the pivot on the screen ...
+  Eigen::Vector2d middle_mm = Eigen::Vector2d::Zero();           ///< the middle of the room that panels leave on the screen
+  Eigen::Vector2d pan_mm = Eigen::Vector2d::Zero();              ///< position of the pivot on the screen, from `middle_mm` ...
   double before_mm = 0;                                          ///< ... and its distance in front of it, before depth is compressed
   Sphere bounds;  ///< around the whole model, deck coordinates; it must stay in the comfort box
   ComfortBox comfort;
@@ -87,7 +88,8 @@ View with_pivot(const View& view, const Vec3& deck_point);
 /// Moves the model in depth by `share` of what brings the point into the screen's plane, and sideways so that the eye sees the point at the
 /// same position of the screen.
 View toward_screen_plane(const View& view, const Vec3& deck_point, const Vec3& eye_mm, double share = 1);
-/// Centres the box and scales it to fill the screen (w x h mm) with a margin, for an eye at `eye_distance_mm`. Keeps the rotation.
+/// Centres the box in the view's middle and scales it to fill a room of w x h mm there with a margin, for an eye at `eye_distance_mm`.
+/// Keeps the rotation.
 View fit(const View& view, const Box& box, const Eigen::Vector2d& screen_mm, double eye_distance_mm = 650);
 /// The same for the box around rotation * point of all points (`turned`). It is tighter than a box along the deck's axes.
 View fit_turned(const View& view, const Box& turned, const Eigen::Vector2d& screen_mm, double eye_distance_mm = 650);

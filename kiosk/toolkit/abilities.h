@@ -4,8 +4,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <vector>
 
+#include "kiosk/input/command.h"
 #include "kiosk/input/gestures.h"
+#include "kiosk/panels/option_row.h"
 #include "kiosk/panels/panel_layout.h"
 #include "kiosk/panels/question.h"
 #include "kiosk/toolkit/pointer.h"
@@ -144,19 +147,54 @@ class TracesPicture : public Ability {
 
 // --- panels; drawn inside Gui::layout ---
 
-class HasStatus : public Ability {
- public:
-  /// A section of the panel at the right.
-  virtual void draw_status(panels::PanelLayout& layout) = 0;
-  /// Its height in pixels beyond the panel's own.
-  virtual double status_height(double /*width*/) const { return 0; }
+/// Where a tool stands in the rail, from above.
+enum class RailPlace : std::uint8_t { select, pull, turn, mesh, quality, contact, compare, pen };
+
+/// A button of the rail.
+struct RailEntry {
+  RailPlace place{};
+  const char* label = "";
+  const input::KeyBinding* key = nullptr;  ///< the command of the button
+  bool on = false;                         ///< in hand, or at work
 };
 
-/// Has the list that fills the rest of the panel at the right.
-class HasList : public Ability {
+class InRail : public Ability {
  public:
-  virtual void draw_list(panels::PanelLayout& layout) = 0;
-  virtual std::size_t list_rows() const = 0;
+  virtual std::vector<RailEntry> rail() const = 0;
+};
+
+/// Has settings that are seen while the tool is in hand.
+class HasOptions : public Ability {
+ public:
+  /// The settings that are changed most, in the row below the view. They stand in the panel too.
+  virtual void draw_options(panels::OptionRow& row) = 0;
+  /// The tool and how it is set, in a few words: "Pull · smooth · mirror off".
+  virtual std::string setting_words() const = 0;
+};
+
+/// Shows what changes while the hand pulls, in a few words: "Lift 12.4 mm, 416 nodes move".
+class TellsLive : public Ability {
+ public:
+  virtual std::string live_words() const = 0;
+};
+
+class HasStatus : public Ability {
+ public:
+  /// A section at the top of the dock's lower half, whatever tool is in hand.
+  virtual void draw_status(panels::PanelLayout& layout) = 0;
+};
+
+/// Has a tab in the upper half of the dock.
+class HasTab : public Ability {
+ public:
+  virtual const char* tab() const = 0;
+  virtual void draw_tab(panels::PanelLayout& layout) = 0;
+};
+
+/// Adds entries to a menu beside the commands.
+class HasMenuEntries : public Ability {
+ public:
+  virtual void draw_menu_entries(input::Menu menu, panels::PanelLayout& layout) = 0;
 };
 
 class DrawsOverPicture : public Ability {
@@ -169,8 +207,6 @@ class HasDialogs : public Ability {
  public:
   /// The dialog of this kind. `opened`: it wasn't there the last time.
   virtual void draw_dialog(int kind, bool opened, panels::PanelLayout& layout) = 0;
-  /// Whether that dialog hides the panels at the sides.
-  virtual bool dialog_covers(int /*kind*/) const { return false; }
 };
 
 class AsksQuestions : public Ability {

@@ -8,14 +8,14 @@
 
 namespace prismesh::kiosk::toolkit {
 
-void show_left(ToolContext& context, Tool* tool) {
-  context.open.left = tool;
+void take_in_hand(ToolContext& context, Tool* tool) {
+  context.open.in_hand = tool;
   context.trace.line("panel " + (tool != nullptr ? std::string(tool->panel_name()) : "document"));
   context.tools.panel_changed();
   context.follow_soon = true;
 }
 
-void toggle_left(ToolContext& context, Tool* tool) { show_left(context, context.open.left == tool ? nullptr : tool); }
+void toggle_in_hand(ToolContext& context, Tool* tool) { take_in_hand(context, context.open.in_hand == tool ? nullptr : tool); }
 
 void open_dialog(ToolContext& context, HasDialogs* owner, int kind) {
   context.open.dialog = {owner, kind};

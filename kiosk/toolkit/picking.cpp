@@ -2,6 +2,11 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
+#include "base/readable_number.h"
+#include "kiosk/panels/text.h"
+
 namespace prismesh::kiosk::toolkit {
 namespace {
 
@@ -26,11 +31,39 @@ render::Picture plain_picture(const PictureView& view) {
   return picture;
 }
 
-double pane_shift(const PictureView& view) { return 0.25 * std::max(0.2, 1 - view.covered_width / std::max(view.size.width, 1)); }
+render::PixelRect room(const PictureView& view) {
+  const render::PixelRect& room = view.room;
+  const bool some = room.x1 > room.x0 && room.y1 > room.y0;
+  return some ? room : render::PixelRect{0, 0, static_cast<double>(view.size.width), static_cast<double>(view.size.height)};
+}
+
+Eigen::Vector2d room_mm(const PictureView& view) {
+  const render::PixelRect rect = room(view);
+  const Eigen::Vector2d screen = stereo::screen_size_mm(view.profile, view.size.width, view.size.height);
+  return {screen.x() * (rect.x1 - rect.x0) / std::max(view.size.width, 1),
+          screen.y() * (rect.y1 - rect.y0) / std::max(view.size.height, 1)};
+}
+
+Eigen::Vector2d room_middle_mm(const PictureView& view) {
+  const render::PixelRect rect = room(view);
+  const Eigen::Vector2d screen = stereo::screen_size_mm(view.profile, view.size.width, view.size.height);
+  return {screen.x() * (0.5 * (rect.x0 + rect.x1) / std::max(view.size.width, 1) - 0.5),
+          screen.y() * (0.5 - 0.5 * (rect.y0 + rect.y1) / std::max(view.size.height, 1))};
+}
+
+render::TwoViews two_views(const PictureView& view) {
+  const render::PixelRect rect = room(view);
+  const double width = std::max(view.size.width, 1);
+  return {true, 0.25 * (rect.x1 - rect.x0) / width, 0.5 * (rect.x0 + rect.x1) / width};
+}
 
 double pane_shift_mm(const PictureView& view) {
-  return pane_shift(view) * stereo::screen_size_mm(view.profile, view.size.width, view.size.height).x();
+  return two_views(view).shift * stereo::screen_size_mm(view.profile, view.size.width, view.size.height).x();
 }
+
+namespace {
+double border_pixel(const PictureView& view) { return two_views(view).border * view.size.width; }
+}  // namespace
 
 stereo::Aim aim(const PictureView& view) {
   render::Picture picture = plain_picture(view);
@@ -38,12 +71,12 @@ stereo::Aim aim(const PictureView& view) {
   return render::aim_for(picture, view.size.width, view.size.height);
 }
 
-bool is_beside(const PictureView& view, const Pixel& pixel) { return view.two_views && pixel.x() <= 0.5 * view.size.width; }
+bool is_beside(const PictureView& view, const Pixel& pixel) { return view.two_views && pixel.x() <= border_pixel(view); }
 
 /// What is in the left view is in the right one too, unless it came or went in between.
 Pixel in_picked_view(const PictureView& view, const Pixel& pixel) {
-  const bool left = view.two_views && pixel.x() < 0.5 * view.size.width;
-  return left ? Pixel(pixel.x() + 2 * pane_shift(view) * view.size.width, pixel.y()) : pixel;
+  const bool left = view.two_views && pixel.x() < border_pixel(view);
+  return left ? Pixel(pixel.x() + 2 * two_views(view).shift * view.size.width, pixel.y()) : pixel;
 }
 
 bool is_pickable(const ToolContext& context, const Pixel& pixel) { return !context.shown.older && !is_beside(context.view, pixel); }
@@ -60,6 +93,29 @@ std::optional<mesh::NodeIndex> shown_node_at(const ToolContext& context, const P
 std::optional<mesh::ShellIndex> shell_at(const ToolContext& context, const std::optional<Pixel>& pixel) {
   const bool pickable = pixel && context.shown.snapshot && is_pickable(context, *pixel);
   return pickable ? context.renderer.shell_at(aim(context.view), *pixel) : std::nullopt;
+}
+
+PointedAt pointed_at(const ToolContext& context, const std::optional<Pixel>& pixel) {
+  PointedAt found;
+  const auto& shown = context.shown.snapshot;
+  if (!pixel || !shown) return found;
+  found.node = shown_node_at(context, *pixel);
+  found.shell = shell_at(context, pixel);
+  if (found.shell && found.shell->value >= shown->shell_count()) found.shell.reset();
+  const ipc::SnapshotInfo& info = shown->info();
+  if (found.node) {
+    const mesh::Vec3& at = shown->position(found.node->value);
+    found.words = fmt::format("node {}  ({} {} {}) {}", shown->node_id(found.node->value), readable(at.x(), 6), readable(at.y(), 6),
+                              readable(at.z(), 6), info.length_unit);
+  }
+  if (!found.shell) return found;
+  if (!found.words.empty()) found.words += "   ";
+  found.words += fmt::format("shell {}", shown->shell_id(found.shell->value));
+  const mesh::PartIndex part = shown->shell_part(found.shell->value);
+  if (part.value >= info.parts.size()) return found;
+  const ipc::SnapshotPart& its = info.parts[part.value];
+  found.words += fmt::format("   part {} {}", its.id, panels::printable(its.name));
+  return found;
 }
 
 std::optional<mesh::ShellIndex> shell_with_id(const ToolContext& context, std::int64_t id) {

@@ -11,9 +11,15 @@ namespace prismesh::kiosk::toolkit {
 /// View, eyes, display and colours, without what stands in the picture.
 render::Picture plain_picture(const PictureView& view);
 
-/// How far each of two views stands from the middle, as a share of the picture's width: in the middle of what panels leave of its half.
-double pane_shift(const PictureView& view);
-/// `pane_shift` in mm on the screen.
+/// The part of the picture that the model is seen in.
+render::PixelRect room(const PictureView& view);
+/// Its size in mm on the screen.
+Eigen::Vector2d room_mm(const PictureView& view);
+/// Its middle in mm from the screen's.
+Eigen::Vector2d room_middle_mm(const PictureView& view);
+/// How two views share it: the border in its middle, each view in the middle of its half.
+render::TwoViews two_views(const PictureView& view);
+/// The shift of each in mm on the screen.
 double pane_shift_mm(const PictureView& view);
 
 /// Aims into the view that things are picked in: the right one of two.
@@ -31,6 +37,9 @@ std::optional<mesh::NodeIndex> node_at(const ToolContext& context, const input::
 std::optional<mesh::NodeIndex> shown_node_at(const ToolContext& context, const input::Pixel& pixel);
 /// The shell under a pixel, where something can be picked.
 std::optional<mesh::ShellIndex> shell_at(const ToolContext& context, const std::optional<input::Pixel>& pixel);
+
+/// What is under the pointer, in words too.
+PointedAt pointed_at(const ToolContext& context, const std::optional<input::Pixel>& pixel);
 
 /// The shell with an id; nothing if the shown snapshot hasn't got it. Costs a pass over the ids.
 std::optional<mesh::ShellIndex> shell_with_id(const ToolContext& context, std::int64_t id);

@@ -17,7 +17,7 @@ inline constexpr double kTwoViewsSize = 0.5;
 
 struct PictureView {
   display::PixelSize size{1, 1};
-  double covered_width = 0;  ///< pixels at the left and right that panels cover
+  render::PixelRect room{};  ///< what panels leave of the picture; empty: all of it
   stereo::Profile profile;
   stereo::SeenFrom seen;
   render::PanelPlace panel;

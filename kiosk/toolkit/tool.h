@@ -40,13 +40,12 @@ class Tool {
 
   // --- the panel; drawn inside Gui::layout ---
 
-  /// The panel at the left as the trace names it; empty: the tool has none.
+  /// The tool's panel as the trace names it; empty: the tool has none.
   virtual std::string_view panel_name() const { return {}; }
-  virtual void draw_left(panels::PanelLayout& /*layout*/) {}
-  /// The tool's panel was opened or closed.
+  /// The panel, in the lower half of the dock while the tool is in hand.
+  virtual void draw_panel(panels::PanelLayout& /*layout*/) {}
+  /// The tool was taken in hand or put down.
   virtual void panel_changed() {}
-  /// A section of the document's panel.
-  virtual void draw_document_section(panels::PanelLayout& /*layout*/) {}
 };
 
 }  // namespace prismesh::kiosk::toolkit

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "base/clock.h"
 #include "kiosk/link/model_link.h"
@@ -28,6 +29,13 @@ struct ShownModel {
   bool older = false;                                 ///< the renderer's model is an older state: nothing in it can be picked
 };
 
+/// What is under the pointer.
+struct PointedAt {
+  std::optional<mesh::NodeIndex> node;    ///< the nearest one within reach
+  std::optional<mesh::ShellIndex> shell;  ///< of the shown model
+  std::string words;                      ///< "node 17 (1.2 3.4 5.6) mm   shell 4   part 2 Sill"; empty: nothing is
+};
+
 /// The selection as the next gesture meets it.
 struct SelectionFocus {
   std::optional<mesh::NodeIndex> last_clicked;
@@ -36,7 +44,7 @@ struct SelectionFocus {
   double crease_angle = 30;                                 ///< degrees: sharper edges are creases
 };
 
-/// What covers the side panels.
+/// What covers the view.
 enum class Cover : std::uint8_t { none, menu, help, warnings };
 
 struct OpenPanels {
@@ -46,7 +54,8 @@ struct OpenPanels {
     int kind = 0;
     bool operator==(const Dialog&) const = default;
   };
-  Tool* left = nullptr;  ///< whose panel is open at the left; null: the document's
+  Tool* in_hand = nullptr;  ///< whose panel and options are shown; null: those of `usual`
+  Tool* usual = nullptr;    ///< the tool that selects
   Dialog dialog;
   Cover cover = Cover::none;
 };
@@ -69,6 +78,7 @@ struct ToolContext {
   PictureView view{};
   ShownModel shown{};
   SelectionFocus selection{};
+  PointedAt pointed{};
   OpenPanels open{};
   std::size_t glyphs_left_out = 0;  ///< glyphs that the last picture had no room for
   std::uint64_t changes = 0;        ///< counts up with each change of the picture or the panels

@@ -66,8 +66,8 @@ class ToolSet {
   All all_;
   std::vector<Moded> moded_;  ///< all of them
   AbilityLists<TakesNumbers, HasHandle, Drags, Watches, HasMode, TakesBack, Clears, GuardsEdits, SetsShaping, SetsRegion, Previews,
-               MovesView, FollowsView, ColoursModel, HidesGlyphs, TracesPicture, HasStatus, HasList, DrawsOverPicture, HasDialogs,
-               AsksQuestions>
+               MovesView, FollowsView, ColoursModel, HidesGlyphs, TracesPicture, HasStatus, HasTab, InRail, HasOptions, TellsLive,
+               HasMenuEntries, DrawsOverPicture, HasDialogs, AsksQuestions>
       abilities_;
 };
 

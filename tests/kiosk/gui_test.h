@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "kiosk/panels/gui.h"
+#include "kiosk/panels/layout.h"
 #include "tests/kiosk/render_test.h"
 
 namespace prismesh::kiosk::panels {
@@ -22,6 +23,16 @@ class GuiTest : public render::RenderTest {
   void TearDown() override {
     gui_.reset();
     RenderTest::TearDown();
+  }
+
+  /// Lays a tool's panel out as the kiosk does: in the dock, where it scrolls. Inside Gui::layout.
+  template <class Build>
+  static void in_dock(display::PixelSize picture, const Build& build) {
+    begin_docked("In hand", {0, 0, 312, static_cast<float>(picture.height)});
+    ImGui::BeginChild("panel");
+    build();
+    ImGui::EndChild();
+    ImGui::End();
   }
 
   std::optional<Gui> gui_;

@@ -1,26 +1,22 @@
-// The panel that chooses what to compare, and what all panels at the left share.
+// The panel that chooses what to compare.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "kiosk/panels/document_panel.h"
 #include "kiosk/panels/layout.h"
 #include "kiosk/tools/comparison/compare_panel.h"
-#include "kiosk/tools/selection/select_section.h"
-#include "kiosk/tools/view/view_sections.h"
 #include "tests/kiosk/gui_test.h"
 
 namespace prismesh::kiosk::tools::comparison {
 namespace {
 
-using panels::PanelLayout;
-
-class LeftPanels : public panels::GuiTest {
+class ComparePanel : public panels::GuiTest {
  protected:
   /// Shows the requested comparison, as the kiosk does.
   void lay_out() {
-    PanelLayout layout{picture_};
     gui_->layout(picture_, 0.016, [&] {
-      if (const auto wanted = compare_panel(facts_, entry_, layout)) facts_.wish = *wanted;
+      in_dock(picture_, [&] {
+        if (const auto wanted = compare_panel(facts_, entry_)) facts_.wish = *wanted;
+      });
     });
   }
   void click(double x, double y) {
@@ -67,7 +63,7 @@ class LeftPanels : public panels::GuiTest {
   CompareEntry entry_;
 };
 
-TEST_F(LeftPanels, both_expressions_of_a_distance_are_taken_however_their_fields_are_left) {
+TEST_F(ComparePanel, both_expressions_of_a_distance_are_taken_however_their_fields_are_left) {
   facts_.wish.field = "distance";
   for (int round = 0; round < 3; ++round) lay_out();
   const std::vector<double> at = fields();
@@ -85,7 +81,7 @@ TEST_F(LeftPanels, both_expressions_of_a_distance_are_taken_however_their_fields
   EXPECT_THAT(facts_.wish.to, testing::HasSubstr("part:3"));
 }
 
-TEST_F(LeftPanels, another_deck_is_named_by_its_path) {
+TEST_F(ComparePanel, another_deck_is_named_by_its_path) {
   facts_.wish.field = "displacement";
   facts_.wish.against = "";
   for (int round = 0; round < 3; ++round) lay_out();
@@ -95,24 +91,6 @@ TEST_F(LeftPanels, another_deck_is_named_by_its_path) {
   type("/decks/before.k");
   press(display::Key::enter);
   EXPECT_EQ(facts_.wish.against, "/decks/before.k");
-}
-
-TEST_F(LeftPanels, none_runs_off_a_small_picture_in_the_large_type_of_stereo) {
-  picture_ = {1280, 720};
-  ASSERT_TRUE(gui_->set_type(panels::kStereoType));
-  PanelLayout layout{picture_};
-  for (int round = 0; round < 3; ++round)
-    gui_->layout(picture_, 0.016, [&] {
-      panels::begin_left("Document", picture_);
-      panels::document_head({});
-      selection::select_section({}, layout);
-      view::picture_section("part", "prism-mask", layout);
-      panels::history_section({0, 1U << 30});
-      panels::document_foot();
-      ImGui::End();
-    });
-  EXPECT_TRUE(gui_->on_panel(60, picture_.height - 60.0)) << "the panel has more rows than fit in its height";
-  EXPECT_FALSE(gui_->on_panel(60, picture_.height - 4.0));
 }
 
 }  // namespace

@@ -53,7 +53,7 @@ class LegendByHand : public panels::GuiTest {
   /// Applies the requested limits to the legend, as the kiosk does.
   bool lay_out() {
     std::optional<SetLimits> wanted;
-    gui_->layout(kLegendPicture, 0.016, [&] { wanted = legend(facts_, kLegendPicture).wanted; });
+    gui_->layout(kLegendPicture, 0.016, [&] { wanted = legend(facts_, panels::PanelLayout{kLegendPicture}).wanted; });
     if (wanted) facts_.look.clear = wanted->clear, facts_.look.full = wanted->full;
     return wanted.has_value();
   }

@@ -37,7 +37,7 @@ class QualityPanel : public panels::GuiTest {
   QualityActions lay_out() {
     QualityActions actions;
     PanelLayout layout{kPanelPicture};
-    gui_->layout(kPanelPicture, 0.016, [&] { actions = quality_panel(facts_, layout); });
+    gui_->layout(kPanelPicture, 0.016, [&] { in_dock(kPanelPicture, [&] { actions = quality_panel(facts_, layout); }); });
     return actions;
   }
   QualityActions click(double x, double y, bool shift = false) {
@@ -152,8 +152,8 @@ TEST_F(QualityPanel, panels_keep_the_pointer_from_the_picture_and_words_on_it_do
   PanelLayout layout{kPanelPicture};
   for (int round = 0; round < 2; ++round)
     gui_->layout(kPanelPicture, 0.016, [&] {
-      quality_panel(facts_, layout);
-      panels::guidance_panel("Axis: click the first node, Esc gives up", kPanelPicture);
+      in_dock(kPanelPicture, [&] { quality_panel(facts_, layout); });
+      panels::guidance_panel("Axis: click the first node, Esc gives up", panels::whole(kPanelPicture));
     });
   EXPECT_TRUE(gui_->on_panel(60, 60)) << "the panel at the left";
   EXPECT_FALSE(gui_->on_panel(kPanelPicture.width / 2.0, 20)) << "a hint must not catch clicks";

@@ -84,7 +84,7 @@ TEST_F(ToolSetTest, only_tools_with_an_ability_are_asked_in_the_order_of_all) {
   tools_.add(std::make_unique<PlainTool>());
   EXPECT_EQ(tools_.all().size(), 3u);
   EXPECT_THAT(tools_.with<GuardsEdits>(), ElementsAre(&first_, &second_));
-  EXPECT_TRUE(tools_.with<HasList>().empty());
+  EXPECT_TRUE(tools_.with<HasTab>().empty());
   tools_.edit_begins();
   EXPECT_THAT(noted_, ElementsAre("first: edit begins", "second: edit begins"));
   EXPECT_EQ(tools_.guidance(), "plain words") << "every tool may have some";

@@ -179,7 +179,7 @@ class ContactPanel : public panels::GuiTest {
     std::optional<std::size_t> clicked;
     panels::PanelLayout layout{kContactPicture};
     layout.run_command = [this](const input::Command& command) { commands_.insert(command.number); };
-    gui_->layout(kContactPicture, 0.016, [&] { clicked = contact_panel(facts_, layout); });
+    gui_->layout(kContactPicture, 0.016, [&] { in_dock(kContactPicture, [&] { clicked = contact_panel(facts_, layout); }); });
     for (const auto& action : layout.actions) action();
     return clicked;
   }

@@ -59,16 +59,18 @@ TEST_F(CompareTest, the_view_beside_is_only_shown) {
   station_->key("ctrl+c");
   ASSERT_FALSE(station_->kiosk().wait_for("view beside generation ").empty());
   // So near that the edited sheet would reach into the left half, were it not cut.
-  for (int i = 0; i < 12; ++i) station_->click(600, 320, 4);
+  const Station::Item view = *station_->item("view");
+  const double left = view.middle()[0] - 0.05 * view.width, right = view.middle()[0] + 0.2 * view.width;
+  for (int i = 0; i < 12; ++i) station_->click(right, 320, 4);
   station_->settled_aim();
   station_->kiosk().skip_lines();
-  station_->move(420, 320);
+  station_->move(left, 320);
   station_->key("ctrl+d");
   ASSERT_FALSE(station_->kiosk().wait_for("operation split").empty());
   station_->key("j");
   ASSERT_FALSE(station_->kiosk().wait_for("quality generation").empty()) << "the server answers one after the other";
   for (const char* said : {"operation previewed", "operation refused"}) EXPECT_TRUE(station_->kiosk().last(said).empty()) << said;
-  station_->move(600, 320);
+  station_->move(right, 320);
   station_->key("ctrl+d");
   EXPECT_FALSE(station_->kiosk().wait_for("operation previewed").empty()) << "in the right one there is a shell";
 }
@@ -90,10 +92,10 @@ TEST_F(CompareTest, a_click_or_the_wheel_on_a_panel_is_the_panels_alone) {
   ASSERT_TRUE(station_->handle());
   const Station::Aim aim = station_->settled_aim();
   const std::string generation = station_->kiosk().last("generation ");
-  station_->click(940, 40);     // on the shells' quality
-  station_->click(60, 40);      // on the document
-  station_->click(940, 40, 4);  // the wheel
-  station_->drag(940, 40, 900, 60);
+  station_->click(940, 450);     // on the dock
+  station_->click(60, 500);      // on the rail, below its buttons
+  station_->click(940, 450, 4);  // the wheel
+  station_->drag(940, 450, 900, 470);
   // Whatever the picture had made of these would be there before what this key does.
   station_->kiosk().skip_lines();
   station_->key("ctrl+c");

@@ -226,6 +226,22 @@ Station::Aim Station::settled_aim() {
 
 Station::Aim Station::aim() { return aim_from(kiosk_->last("aim ")); }
 
+std::optional<Station::Item> Station::item(const std::string& name) {
+  const std::string beginning = "item \"" + name + "\" ";
+  std::stringstream line(kiosk_->last(beginning).substr(std::min(beginning.size(), kiosk_->last(beginning).size())));
+  Item item;
+  line >> item.x >> item.y >> item.width >> item.height;
+  if (!line) return std::nullopt;
+  std::getline(line >> std::ws, item.state);
+  return item;
+}
+
+void Station::click_item(const std::string& name) {
+  const std::optional<Item> found = item(name);
+  ASSERT_TRUE(found) << "there is no " << name << " on the screen\n" << kiosk_->all_output();
+  click(found->middle()[0], found->middle()[1]);
+}
+
 std::array<double, 2> Station::Aim::pixel_of(const Point& point) const {
   const auto row = [&](std::size_t r) { return m[r] * point[0] + m[4 + r] * point[1] + m[8 + r] * point[2] + m[12 + r]; };
   return {(row(0) / row(3) + 1) / 2 * width, (1 - row(1) / row(3)) / 2 * height};

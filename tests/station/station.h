@@ -71,6 +71,16 @@ class Station {
   void type(const std::string& text);
 
   // --- the kiosk's output ---
+  /// A thing on the screen, as a line beginning with "item " says it: where, and its state. Empty: it isn't there.
+  struct Item {
+    double x = 0, y = 0, width = 0, height = 0;
+    std::string state;
+    std::array<double, 2> middle() const { return {x + width / 2, y + height / 2}; }
+  };
+  std::optional<Item> item(const std::string& name);
+  /// Clicks in its middle; fails if it isn't there.
+  void click_item(const std::string& name);
+
   /// How a deck point comes to a pixel, as a line beginning with "aim " says it: column-major, deck to clip space.
   struct Aim {
     double width = 0, height = 0;

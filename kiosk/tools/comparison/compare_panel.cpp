@@ -124,10 +124,8 @@ void choose_field(const CompareFacts& facts, CompareEntry& entry, CompareWish& w
 
 }  // namespace
 
-std::optional<CompareWish> compare_panel(const CompareFacts& facts, CompareEntry& entry, panels::PanelLayout& layout) {
+std::optional<CompareWish> compare_panel(const CompareFacts& facts, CompareEntry& entry) {
   CompareWish wanted = facts.wish;
-  panels::begin_left("Comparing", layout.picture);
-  panels::panel_title("Comparing", "Shift+C closes; colours and views stay");
   choose_field(facts, entry, wanted);
   if (!facts.problem.empty()) ImGui::TextWrapped("%s", printable(facts.problem).c_str());
   section("Views");
@@ -147,14 +145,13 @@ std::optional<CompareWish> compare_panel(const CompareFacts& facts, CompareEntry
     fact("most", readable(legend.max, 4));
     fact("at", legend.max_at);
   }
-  ImGui::End();
   return wanted != facts.wish ? std::optional(wanted) : std::nullopt;
 }
 
-void view_captions(const CompareFacts& facts, display::PixelSize picture, float top) {
+void view_captions(const CompareFacts& facts, int picture_width, float top) {
   for (std::size_t i = 0; i < facts.captions.size(); ++i) {
     const CompareFacts::Caption& caption = facts.captions[i];
-    ImGui::SetNextWindowPos(ImVec2(std::floor(static_cast<float>(caption.centre * picture.width)), top), 0, ImVec2(0.5f, 0));
+    ImGui::SetNextWindowPos(ImVec2(std::floor(static_cast<float>(caption.centre * picture_width)), top), 0, ImVec2(0.5f, 0));
     ImGui::Begin(("View" + std::to_string(i)).c_str(), nullptr,
                  kPanelFlags | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoInputs);
     ImGui::TextUnformatted(printable(caption.words).c_str());

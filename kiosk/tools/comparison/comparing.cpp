@@ -205,8 +205,8 @@ void Comparing::took_field(Pane pane, const ipc::GetField& asked, const ipc::Ans
                           made->max_at));
 }
 
-void Comparing::dress(render::Picture& picture, double shift) const {
-  if (two_views()) picture.two_views = render::TwoViews{true, shift};
+void Comparing::dress(render::Picture& picture, const render::TwoViews& both) const {
+  if (two_views()) picture.two_views = both;
   if (!coloured()) return;
   picture.colour = render::ColourMode::field;
   picture.quality_glyphs = false;  // yellow and red would be read as values
@@ -223,20 +223,20 @@ std::string Comparing::words_of(const std::optional<std::uint64_t>& generation) 
 }
 
 /// Which state is seen where, wherever that isn't the current one alone.
-std::vector<CompareFacts::Caption> Comparing::captions(double shift) const {
-  if (two_views()) return {{words_of(wish_.beside), 0.5 - shift}, {words_of(shown()), 0.5 + shift}};
-  if (shows_older() && !glance_) return {{words_of(wish_.shown) + "   only shown: Shift+C chooses another state", 0.5}};
+std::vector<CompareFacts::Caption> Comparing::captions(const render::TwoViews& both) const {
+  if (two_views()) return {{words_of(wish_.beside), both.border - both.shift}, {words_of(shown()), both.border + both.shift}};
+  if (shows_older() && !glance_) return {{words_of(wish_.shown) + "   only shown: Shift+C chooses another state", both.border}};
   return {};
 }
 
-CompareFacts Comparing::facts(double shift) const {
+CompareFacts Comparing::facts(const render::TwoViews& both) const {
   CompareFacts facts;
   facts.wish = wish_;
   for (const View* view : {&other_, &main_})
     for (const std::string& problem : {view->field_problem, view->view_problem})
       if (!problem.empty()) facts.problem = problem;
   for (const ipc::ListedGeneration& state : states_) facts.states.push_back({state.number, words_of_state(state)});
-  facts.captions = captions(shift);
+  facts.captions = captions(both);
   if (link_.document.snapshot()) facts.current = link_.document.snapshot()->info().generation;
   for (const Pane pane : {Pane::model, Pane::other}) {
     const View& view = of(pane);
@@ -253,10 +253,9 @@ CompareFacts Comparing::facts(double shift) const {
     legend.new_nodes = view.made->new_nodes;
     legend.shells_without = view.made->shells_without;
     legend.pane = static_cast<std::size_t>(pane);
-    if (two_views()) {
-      legend.centre = 0.5 + (pane == Pane::model ? shift : -shift);
-      legend.widest = 2 * shift;
-    }
+    legend.centre = both.border;
+    legend.widest = (two_views() ? 2 : 4) * both.shift;
+    if (two_views()) legend.centre += pane == Pane::model ? both.shift : -both.shift;
     facts.legends.push_back(std::move(legend));
   }
   return facts;

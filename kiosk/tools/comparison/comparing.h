@@ -45,8 +45,8 @@ class Comparing {
   /// By part, 1: hidden in the current state, and so in all that are shown.
   const std::vector<std::uint8_t>& hidden() const { return hidden_; }
   /// `shift`: as in render::TwoViews.
-  void dress(render::Picture& picture, double shift) const;
-  CompareFacts facts(double shift) const;
+  void dress(render::Picture& picture, const render::TwoViews& both) const;
+  CompareFacts facts(const render::TwoViews& both) const;
 
  private:
   /// One of the two views: which state it shows, and by what it is coloured.
@@ -71,7 +71,7 @@ class Comparing {
   /// Whether the choice of the field is complete.
   bool field_wanted() const;
   std::string words_of(const std::optional<std::uint64_t>& generation) const;
-  std::vector<CompareFacts::Caption> captions(double shift) const;
+  std::vector<CompareFacts::Caption> captions(const render::TwoViews& both) const;
 
   link::ModelLink& link_;
   render::Renderer& renderer_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "kiosk/input/key_table.h"
 #include "kiosk/panels/gui.h"
 #include "kiosk/toolkit/edits.h"
 #include "kiosk/toolkit/open_panels.h"
@@ -50,7 +51,7 @@ std::string_view ComparisonTool::name() const { return kName; }
 void ComparisonTool::command(std::uint8_t number, const toolkit::Pointer&) {
   switch (static_cast<ComparisonCommand>(number)) {
     case ComparisonCommand::before_and_after: before_and_after(); break;
-    case ComparisonCommand::panel: toolkit::toggle_left(context_, this); break;
+    case ComparisonCommand::panel: toolkit::toggle_in_hand(context_, this); break;
     case ComparisonCommand::two_views: turn_two_views(); break;
   }
 }
@@ -146,23 +147,38 @@ void ComparisonTool::resize_view(double by) {
 
 // --- picture and panels ---
 
-void ComparisonTool::add_to_picture(render::Picture& picture) const { comparing_.dress(picture, toolkit::pane_shift(context_.view)); }
+void ComparisonTool::add_to_picture(render::Picture& picture) const { comparing_.dress(picture, toolkit::two_views(context_.view)); }
 
-void ComparisonTool::draw_left(PanelLayout& layout) {
-  if (const std::optional<CompareWish> wanted = compare_panel(comparing_.facts(toolkit::pane_shift(context_.view)), entry_, layout))
+std::vector<toolkit::RailEntry> ComparisonTool::rail() const {
+  return {{toolkit::RailPlace::compare, "Compare", &input::binding_of(kKeys, command_of(ComparisonCommand::panel)),
+           context_.open.in_hand == this}};
+}
+
+void ComparisonTool::draw_options(panels::OptionRow& row) {
+  row.toggle("before", before_after_.shows_before(), input::binding_of(kKeys, command_of(ComparisonCommand::before_and_after)));
+  row.toggle("two views", comparing_.two_views(), input::binding_of(kKeys, command_of(ComparisonCommand::two_views)));
+}
+
+std::string ComparisonTool::setting_words() const {
+  const std::string& field = comparing_.wish().field;
+  return std::string("Compare \u00b7 ") + (comparing_.two_views() ? "two views" : "one view") + (field.empty() ? "" : " \u00b7 " + field);
+}
+
+void ComparisonTool::draw_panel(PanelLayout& layout) {
+  if (const std::optional<CompareWish> wanted = compare_panel(comparing_.facts(toolkit::two_views(context_.view)), entry_))
     layout.ask([this, wish = *wanted] { set(wish); });
 }
 
 void ComparisonTool::draw_over_picture(PanelLayout& layout) {
-  CompareFacts facts = comparing_.facts(toolkit::pane_shift(context_.view));
+  CompareFacts facts = comparing_.facts(toolkit::two_views(context_.view));
   for (LegendFacts& each : facts.legends) {
     // Of the right one of two views: in the other nothing is pulled.
     each.before_pull = shows_pull(context_.link) && each.pane == static_cast<std::size_t>(render::Pane::model);
-    const DrawnLegend drawn = legend(each, layout.picture);
+    const DrawnLegend drawn = legend(each, layout);
     if (drawn.wanted) layout.ask([this, limits = *drawn.wanted] { comparing_.set_limits(limits); });
     layout.bottom = std::min(layout.bottom, static_cast<double>(drawn.top) - static_cast<double>(panels::kGrid));
   }
-  view_captions(facts, layout.picture, static_cast<float>(layout.top));
+  view_captions(facts, layout.picture.width, static_cast<float>(layout.top));
 }
 
 }  // namespace prismesh::kiosk::tools::comparison

@@ -23,7 +23,9 @@ class ComparisonTool final : public toolkit::Tool,
                              public toolkit::GuardsEdits,
                              public toolkit::ColoursModel,
                              public toolkit::HidesGlyphs,
-                             public toolkit::DrawsOverPicture {
+                             public toolkit::DrawsOverPicture,
+                             public toolkit::InRail,
+                             public toolkit::HasOptions {
  public:
   explicit ComparisonTool(toolkit::ToolContext& context)
       : context_(context),
@@ -42,8 +44,11 @@ class ComparisonTool final : public toolkit::Tool,
   std::string glyphs_hidden() const override { return comparing_.coloured() ? "no glyphs while values are shown" : ""; }
   std::string guidance() const override { return before_after_.words(); }
   std::string_view panel_name() const override { return "comparing"; }
-  void draw_left(panels::PanelLayout& layout) override;
-  void panel_changed() override { comparing_.open_panel(context_.open.left == this); }
+  void draw_panel(panels::PanelLayout& layout) override;
+  std::vector<toolkit::RailEntry> rail() const override;
+  void draw_options(panels::OptionRow& row) override;
+  std::string setting_words() const override;
+  void panel_changed() override { comparing_.open_panel(context_.open.in_hand == this); }
   void draw_over_picture(panels::PanelLayout& layout) override;
 
  private:

@@ -80,12 +80,12 @@ std::vector<std::string> legend_notes(const LegendFacts& facts) {
   return notes;
 }
 
-DrawnLegend legend(const LegendFacts& facts, display::PixelSize picture) {
+DrawnLegend legend(const LegendFacts& facts, const panels::PanelLayout& layout) {
   const float font = ImGui::GetFontSize(), share = static_cast<float>(std::min(0.36, facts.widest));
-  const float width = panels::on_grid(std::min(22 * font, share * static_cast<float>(picture.width) - 3 * kGrid));
+  const float width = panels::on_grid(std::min(22 * font, share * static_cast<float>(layout.picture.width) - 3 * kGrid));
   const float limit_width = std::min(5.5f * font, 0.4f * width);
   ImGui::SetNextWindowPos(
-      ImVec2(std::floor(static_cast<float>(facts.centre * picture.width)), static_cast<float>(picture.height) - panels::kMargin), 0,
+      ImVec2(std::floor(static_cast<float>(facts.centre * layout.picture.width)), layout.view().bottom() - panels::kMargin), 0,
       ImVec2(0.5f, 1));
   ImGui::SetNextWindowSize(ImVec2(width + 2 * kGrid, 0));
   const std::string name = "Legend" + std::to_string(facts.pane.value_or(9));

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "kiosk/display/window.h"
+#include "kiosk/panels/panel_layout.h"
 #include "kiosk/tools/comparison/legend_facts.h"
 
 namespace prismesh::kiosk::tools::comparison {
@@ -22,6 +22,6 @@ struct DrawnLegend {
 };
 
 /// Lays it out at the bottom of the picture (inside Gui::layout).
-DrawnLegend legend(const LegendFacts& facts, display::PixelSize picture);
+DrawnLegend legend(const LegendFacts& facts, const panels::PanelLayout& layout);
 
 }  // namespace prismesh::kiosk::tools::comparison

@@ -44,8 +44,7 @@ void chosen_section(const ipc::ContactRegion& region, const std::string& unit) {
 
 std::optional<std::size_t> contact_panel(const ContactFacts& facts, PanelLayout& layout) {
   std::optional<std::size_t> clicked;
-  panels::begin_left("Contact", layout.picture);
-  panels::panel_title("Where parts touch", facts.asking ? "Ctrl+K closes; looking .." : "Ctrl+K closes; a row goes there");
+  panels::panel_title("Where parts touch", facts.asking ? "looking .." : "a row goes there");
   const auto button = [&](const char* text, ContactCommand command) {
     if (ImGui::SmallButton(text)) layout.ask(command_of(command));
     panels::hint(input::binding_of(kKeys, command_of(command)));
@@ -56,10 +55,7 @@ std::optional<std::size_t> contact_panel(const ContactFacts& facts, PanelLayout&
   button("look again", ContactCommand::search);
   ImGui::NewLine();
   if (!facts.problem.empty()) ImGui::TextWrapped("%s", panels::printable(facts.problem).c_str());
-  if (facts.contacts == nullptr) {
-    ImGui::End();
-    return clicked;
-  }
+  if (facts.contacts == nullptr) return clicked;
   const ipc::Contacts& contacts = *facts.contacts;
   if (facts.stale && !facts.asking) ImGui::TextWrapped("of an older state; look again (Ctrl+Shift+K)");
   section("Places, worst first");
@@ -94,7 +90,6 @@ std::optional<std::size_t> contact_panel(const ContactFacts& facts, PanelLayout&
                        contacts.without_thickness.size() == 1 ? fmt::format("part {} is", contacts.without_thickness.front()).c_str()
                                                               : fmt::format("{} parts are", contacts.without_thickness.size()).c_str());
   }
-  ImGui::End();
   return clicked;
 }
 

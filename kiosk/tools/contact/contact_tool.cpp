@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "kiosk/input/key_table.h"
 #include "kiosk/toolkit/open_panels.h"
 #include "kiosk/toolkit/picking.h"
 #include "kiosk/toolkit/view_glide.h"
@@ -43,11 +44,11 @@ std::string_view ContactTool::name() const { return kName; }
 
 void ContactTool::command(std::uint8_t number, const toolkit::Pointer&) {
   switch (static_cast<ContactCommand>(number)) {
-    case ContactCommand::panel: toolkit::toggle_left(context_, this); break;
+    case ContactCommand::panel: toolkit::toggle_in_hand(context_, this); break;
     case ContactCommand::next: step(1); break;
     case ContactCommand::previous: step(-1); break;
     case ContactCommand::search:
-      if (!is_open()) toolkit::show_left(context_, this);
+      if (!is_open()) toolkit::take_in_hand(context_, this);
       if (context_.shown.snapshot) link_.want(context_.shown.snapshot->info().generation, true);
       break;
   }
@@ -111,7 +112,7 @@ void ContactTool::document_changed() {
 
 void ContactTool::step(int by) {
   if (!context_.shown.snapshot) return;
-  if (!is_open()) return toolkit::show_left(context_, this);
+  if (!is_open()) return toolkit::take_in_hand(context_, this);
   const ipc::Contacts* contacts = link_.contacts();
   if (contacts == nullptr || contacts->regions.empty()) return;
   const auto count = static_cast<std::ptrdiff_t>(contacts->regions.size());
@@ -134,7 +135,21 @@ void ContactTool::go_to(std::size_t region) {
   context_.trace.line(fmt::format("contact {} of {} {}", region + 1, contacts->regions.size(), region_words(place, info.length_unit)));
 }
 
-void ContactTool::draw_left(PanelLayout& layout) {
+std::vector<toolkit::RailEntry> ContactTool::rail() const {
+  return {{toolkit::RailPlace::contact, "Contact", &input::binding_of(kKeys, command_of(ContactCommand::panel)), is_open()}};
+}
+
+void ContactTool::draw_options(panels::OptionRow& row) {
+  const auto key = [](ContactCommand command) -> const input::KeyBinding& { return input::binding_of(kKeys, command_of(command)); };
+  row.command("<", key(ContactCommand::previous));
+  row.command(">", key(ContactCommand::next));
+  row.command("look again", key(ContactCommand::search));
+  if (link_.contacts() != nullptr) row.words(count_words(*link_.contacts()));
+}
+
+std::string ContactTool::setting_words() const { return "Contact"; }
+
+void ContactTool::draw_panel(PanelLayout& layout) {
   ContactFacts facts;
   facts.contacts = link_.contacts();
   facts.asking = link_.asking();

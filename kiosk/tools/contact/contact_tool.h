@@ -22,7 +22,7 @@ std::span<const input::KeyBinding> keys();
 render::ContactPicture picture_of(const ipc::Contacts& contacts, const std::optional<std::size_t>& chosen,
                                   const std::function<std::optional<mesh::Vec3>(std::uint32_t)>& position);
 
-class ContactTool final : public toolkit::Tool {
+class ContactTool final : public toolkit::Tool, public toolkit::InRail, public toolkit::HasOptions {
  public:
   explicit ContactTool(toolkit::ToolContext& context) : context_(context), link_(context.link, context.clock) {}
 
@@ -32,7 +32,10 @@ class ContactTool final : public toolkit::Tool {
   void model_changed() override { shown_.reset(); }
   void document_changed() override;
   std::string_view panel_name() const override { return "contact"; }
-  void draw_left(panels::PanelLayout& layout) override;
+  void draw_panel(panels::PanelLayout& layout) override;
+  std::vector<toolkit::RailEntry> rail() const override;
+  void draw_options(panels::OptionRow& row) override;
+  std::string setting_words() const override;
   void panel_changed() override;
 
  private:
@@ -42,7 +45,7 @@ class ContactTool final : public toolkit::Tool {
     std::optional<std::size_t> chosen;
     bool operator==(const Shown&) const = default;
   };
-  bool is_open() const { return context_.open.left == this; }
+  bool is_open() const { return context_.open.in_hand == this; }
   /// The regions are those of the state that the renderer draws.
   bool fits() const;
   void step(int by);

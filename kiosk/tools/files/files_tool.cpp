@@ -34,6 +34,7 @@ constexpr std::array kKeys = {
 std::span<const KeyBinding> keys() { return kKeys; }
 
 Command quit_command() { return command_of(FilesCommand::quit); }
+Command save_command() { return command_of(FilesCommand::save); }
 
 std::string_view FilesTool::name() const { return kName; }
 
@@ -74,7 +75,7 @@ std::string FilesTool::save_remark() const {
 void FilesTool::draw_dialog(int kind, bool opened, panels::PanelLayout& layout) {
   const auto dialog = static_cast<PathDialog>(kind);
   const std::string deck = context_.shown.snapshot ? context_.shown.snapshot->info().document : std::string();
-  const std::optional<std::string> entered = path_box({dialog, opened, deck}, layout.picture, entry_);
+  const std::optional<std::string> entered = path_box({dialog, opened, deck}, layout.view(), entry_);
   if (!entered) return;
   layout.ask([this, dialog, path = *entered] { enter(dialog, path); });
   layout.ask([this] { toolkit::close_dialog(context_); });

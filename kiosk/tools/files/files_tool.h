@@ -16,6 +16,7 @@ namespace prismesh::kiosk::tools::files {
 std::span<const input::KeyBinding> keys();
 /// Ends the kiosk; asks first, if there are unsaved edits.
 input::Command quit_command();
+input::Command save_command();
 
 class FilesTool final : public toolkit::Tool, public toolkit::HasDialogs, public toolkit::AsksQuestions {
  public:
@@ -25,7 +26,6 @@ class FilesTool final : public toolkit::Tool, public toolkit::HasDialogs, public
   void command(std::uint8_t number, const toolkit::Pointer& pointer) override;
   Result<void> prepare() override;
   void draw_dialog(int kind, bool opened, panels::PanelLayout& layout) override;
-  bool dialog_covers(int) const override { return true; }
   const panels::Question* question() const override { return deck_files_.question() ? &*deck_files_.question() : nullptr; }
   void reply(panels::Reply reply) override;
 

@@ -58,8 +58,8 @@ void notes(const PathFacts& facts, PathEntry& entry) {
 
 }  // namespace
 
-std::optional<std::string> path_box(const PathFacts& facts, display::PixelSize picture, PathEntry& entry) {
-  panels::begin_centred("Path", picture, ImGui::GetFontSize() * 44);
+std::optional<std::string> path_box(const PathFacts& facts, const panels::Place& room, PathEntry& entry) {
+  panels::begin_centred("Path", room, ImGui::GetFontSize() * 44);
   ImGui::PushFont(panels::title_font());
   ImGui::TextUnformatted(title_of(facts.dialog));
   ImGui::PopFont();

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "kiosk/display/window.h"
+#include "kiosk/panels/places.h"
 
 namespace prismesh::kiosk::tools::files {
 
@@ -27,6 +27,6 @@ struct PathEntry {
 };
 
 /// Lays the box out (inside Gui::layout). Returns the path that was entered.
-std::optional<std::string> path_box(const PathFacts& facts, display::PixelSize picture, PathEntry& entry);
+std::optional<std::string> path_box(const PathFacts& facts, const panels::Place& room, PathEntry& entry);
 
 }  // namespace prismesh::kiosk::tools::files

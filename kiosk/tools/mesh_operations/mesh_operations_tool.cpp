@@ -5,7 +5,9 @@
 
 #include <fmt/format.h>
 
+#include "kiosk/input/key_table.h"
 #include "kiosk/toolkit/edits.h"
+#include "kiosk/toolkit/open_panels.h"
 #include "kiosk/toolkit/picking.h"
 #include "kiosk/toolkit/tool_set.h"
 
@@ -21,11 +23,13 @@ using mesh::repair::Operation;
 
 constexpr std::string_view kName = "mesh operations";
 
-enum class OperationCommand : std::uint8_t { split, collapse, merge, swap, carry_out };
+enum class OperationCommand : std::uint8_t { split, collapse, merge, swap, carry_out, take_in_hand };
 
 constexpr input::Command command_of(OperationCommand command) { return {kName, static_cast<std::uint8_t>(command)}; }
 
 constexpr std::array kKeys = {
+    KeyBinding{display::Key::f3, false, false, command_of(OperationCommand::take_in_hand), Menu::mesh, "F3",
+               "take the tool that changes single shells in hand"},
     KeyBinding{letter('D'), true, false, command_of(OperationCommand::split), Menu::mesh, "Ctrl+D",
                "split: the shell under the pointer, or two at their edge", input::kAsksForEdit},
     KeyBinding{letter('B'), true, false, command_of(OperationCommand::collapse), Menu::mesh, "Ctrl+B",
@@ -53,7 +57,26 @@ void MeshOperationsTool::command(std::uint8_t number, const Pointer& pointer) {
     case OperationCommand::merge: choose(Operation::merge, pointer); break;
     case OperationCommand::swap: choose(Operation::swap, pointer); break;
     case OperationCommand::carry_out: carry_out(); break;
+    case OperationCommand::take_in_hand: toolkit::toggle_in_hand(context_, this); break;
   }
+}
+
+std::vector<toolkit::RailEntry> MeshOperationsTool::rail() const {
+  return {{toolkit::RailPlace::mesh, "Mesh", &input::binding_of(kKeys, command_of(OperationCommand::take_in_hand)),
+           context_.open.in_hand == this || in_mode()}};
+}
+
+void MeshOperationsTool::draw_options(panels::OptionRow& row) {
+  constexpr std::array kOperations{std::pair{"split", Operation::split}, std::pair{"collapse", Operation::collapse},
+                                   std::pair{"merge", Operation::merge}, std::pair{"swap", Operation::swap}};
+  for (std::size_t i = 0; i < kOperations.size(); ++i)
+    row.toggle(kOperations[i].first, chosen_.operation == kOperations[i].second,
+               input::binding_of(kKeys, command_of(static_cast<OperationCommand>(i))));
+  row.words("click a shell or an edge to see it, click again to do it");
+}
+
+std::string MeshOperationsTool::setting_words() const {
+  return chosen_.operation ? "Mesh \u00b7 " + name_of(*chosen_.operation) : "Mesh \u00b7 choose an operation";
 }
 
 bool MeshOperationsTool::gesture(const input::Gesture& gesture) {

@@ -16,7 +16,12 @@ namespace prismesh::kiosk::tools::mesh_operations {
 
 std::span<const input::KeyBinding> keys();
 
-class MeshOperationsTool final : public toolkit::Tool, public toolkit::TakesGestures, public toolkit::HasMode, public toolkit::Previews {
+class MeshOperationsTool final : public toolkit::Tool,
+                                 public toolkit::TakesGestures,
+                                 public toolkit::HasMode,
+                                 public toolkit::Previews,
+                                 public toolkit::InRail,
+                                 public toolkit::HasOptions {
  public:
   explicit MeshOperationsTool(toolkit::ToolContext& context) : context_(context), preview_(context.link.connection) {}
 
@@ -29,6 +34,10 @@ class MeshOperationsTool final : public toolkit::Tool, public toolkit::TakesGest
   Result<void> follow() override;
   void document_changed() override { leave_preview(); }
   std::string guidance() const override;
+  std::string_view panel_name() const override { return "mesh"; }
+  std::vector<toolkit::RailEntry> rail() const override;
+  void draw_options(panels::OptionRow& row) override;
+  std::string setting_words() const override;
 
  private:
   /// The operation that is chosen, and what it would be done to.

@@ -115,12 +115,9 @@ void rows(const PartFacts& facts, Wanted& wanted) {
 
 std::vector<SetVisibility> part_list(const PartFacts& facts, panels::PanelLayout& layout) {
   Wanted wanted;
-  panels::section(facts.files.empty() ? "Parts" : "Files and parts");
   const auto hidden = std::count_if(facts.parts.begin(), facts.parts.end(), [](const PartRow& part) { return part.hidden; });
   if (hidden > 0) {
     const std::string label = fmt::format("show all ({} hidden)", hidden);
-    ImGui::SameLine();
-    ImGui::SetCursorPosX(ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(label.c_str()).x - 2 * kGrid);
     if (ImGui::SmallButton(label.c_str())) layout.ask(command_of(PartsCommand::show_all));
   }
   ImGui::BeginChild("list");

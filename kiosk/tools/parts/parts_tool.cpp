@@ -105,7 +105,7 @@ PartFacts PartsTool::facts() const {
     if (part.hidden) hidden.push_back(part.id);
     if (part.locked) locked.push_back(part.id);
   }
-  if (!context_.link.document.state() || list_rows() == facts.parts.size()) return facts;  // one file is the deck itself
+  if (!context_.link.document.state() || context_.link.document.state()->files.size() < 2) return facts;  // one file is the deck itself
   std::sort(hidden.begin(), hidden.end());
   std::sort(locked.begin(), locked.end());
   for (const ipc::DeckFile& file : context_.link.document.state()->files)
@@ -113,12 +113,7 @@ PartFacts PartsTool::facts() const {
   return facts;
 }
 
-std::size_t PartsTool::list_rows() const {
-  const std::size_t files = context_.link.document.state() ? context_.link.document.state()->files.size() : 0;
-  return context_.shown.snapshot->info().parts.size() + (files > 1 ? files : 0);
-}
-
-void PartsTool::draw_list(panels::PanelLayout& layout) {
+void PartsTool::draw_tab(panels::PanelLayout& layout) {
   for (const SetVisibility& wanted : part_list(facts(), layout)) layout.ask([this, wanted] { set(wanted.on, wanted.action); });
 }
 

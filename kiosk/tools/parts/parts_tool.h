@@ -15,14 +15,14 @@ namespace prismesh::kiosk::tools::parts {
 
 std::span<const input::KeyBinding> keys();
 
-class PartsTool final : public toolkit::Tool, public toolkit::HasList {
+class PartsTool final : public toolkit::Tool, public toolkit::HasTab {
  public:
   explicit PartsTool(toolkit::ToolContext& context) : context_(context) {}
 
   std::string_view name() const override;
   void command(std::uint8_t number, const toolkit::Pointer& pointer) override;
-  void draw_list(panels::PanelLayout& layout) override;
-  std::size_t list_rows() const override;
+  const char* tab() const override { return "Parts"; }
+  void draw_tab(panels::PanelLayout& layout) override;
 
  private:
   std::optional<mesh::PartIndex> part_at(const toolkit::Pointer& pointer) const;

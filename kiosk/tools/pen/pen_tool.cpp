@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "kiosk/input/key_table.h"
 #include "kiosk/toolkit/picking.h"
 #include "kiosk/toolkit/tool_set.h"
 #include "kiosk/tools/pen/pen_keys.h"
@@ -171,9 +172,9 @@ void PenTool::draw_status(panels::PanelLayout&) {
   if (context_.pen.has_pen()) pen_section(*context_.pen.info(), hand_.holds());
 }
 
-double PenTool::status_height(double width) const {
-  if (!context_.pen.has_pen()) return 0;
-  return static_cast<double>(pen_section_height(*context_.pen.info(), hand_.holds(), static_cast<float>(width)));
+std::vector<toolkit::RailEntry> PenTool::rail() const {
+  if (!context_.pen.has_pen()) return {};
+  return {{toolkit::RailPlace::pen, "Pen", &input::binding_of(kKeys, command_of(PenCommand::arm)), hand_.holds()}};
 }
 
 }  // namespace prismesh::kiosk::tools::pen

@@ -20,7 +20,8 @@ class PenTool final : public toolkit::Tool,
                       public toolkit::Drags,
                       public toolkit::Watches,
                       public toolkit::TracesPicture,
-                      public toolkit::HasStatus {
+                      public toolkit::HasStatus,
+                      public toolkit::InRail {
  public:
   explicit PenTool(toolkit::ToolContext& context) : context_(context) {}
 
@@ -35,7 +36,7 @@ class PenTool final : public toolkit::Tool,
   void add_to_picture(render::Picture& picture) const override { picture.pen = shown_; }
   void trace_picture() override;
   void draw_status(panels::PanelLayout& layout) override;
-  double status_height(double width) const override;
+  std::vector<toolkit::RailEntry> rail() const override;
 
  private:
   void take_words();

@@ -266,8 +266,7 @@ void commands_section(const QualityFacts& facts, PanelLayout& layout) {
 
 QualityActions quality_panel(const QualityFacts& facts, PanelLayout& layout) {
   QualityActions actions;
-  panels::begin_left("Quality", layout.picture);
-  panels::panel_title("Quality", facts.figures == nullptr || facts.stale ? "J closes; counting .." : "J closes; a row shows its histogram");
+  panels::panel_title("Quality", facts.figures == nullptr || facts.stale ? "counting .." : "a row shows its histogram");
   panels::check("only what edits made worse", facts.damaged, command_of(QualityCommand::damaged_only), layout);
   if (facts.figures != nullptr) {
     metrics_section(facts, actions);
@@ -278,7 +277,6 @@ QualityActions quality_panel(const QualityFacts& facts, PanelLayout& layout) {
   if (facts.sizes) sizes_section(*facts.sizes, actions);
   if (facts.criteria) criteria_section(*facts.criteria, actions);
   commands_section(facts, layout);
-  ImGui::End();
   return actions;
 }
 

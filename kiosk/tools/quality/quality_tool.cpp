@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "kiosk/input/key_table.h"
 #include "kiosk/panels/number_box.h"
 #include "kiosk/toolkit/edits.h"
 #include "kiosk/toolkit/open_panels.h"
@@ -31,7 +32,7 @@ std::string_view QualityTool::name() const { return kName; }
 
 void QualityTool::command(std::uint8_t number, const Pointer& pointer) {
   switch (static_cast<QualityCommand>(number)) {
-    case QualityCommand::panel: toolkit::toggle_left(context_, this); break;
+    case QualityCommand::panel: toolkit::toggle_in_hand(context_, this); break;
     case QualityCommand::next_error: step_error(1); break;
     case QualityCommand::previous_error: step_error(-1); break;
     case QualityCommand::damaged_only: show_damaged_only(!wish_.damaged); break;
@@ -161,7 +162,7 @@ void QualityTool::leave_error() {
 
 void QualityTool::step_error(int by) {
   if (!context_.shown.snapshot) return;
-  if (!is_open()) return toolkit::show_left(context_, this);
+  if (!is_open()) return toolkit::take_in_hand(context_, this);
   const ipc::Quality* figures = link_.figures();
   if (figures == nullptr || figures->errors.empty()) return;
   const auto count = static_cast<std::ptrdiff_t>(figures->errors.size());
@@ -252,7 +253,7 @@ void QualityTool::document_changed() {
   if (!criteria_files_.empty()) list_criteria();
 }
 
-void QualityTool::draw_left(PanelLayout& layout) {
+void QualityTool::draw_panel(PanelLayout& layout) {
   QualityFacts facts;
   facts.figures = link_.figures();
   facts.stale = !link_.up_to_date(wish_, context_.shown.snapshot->info().generation);
@@ -264,6 +265,29 @@ void QualityTool::draw_left(PanelLayout& layout) {
   facts.sizes = size_facts(context_.shown.snapshot->info());
   if (facts.sizes) facts.criteria = criteria_facts(context_.shown.snapshot->info(), criteria_files_);
   for (const QualityAction& action : quality_panel(facts, layout)) layout.ask([this, action] { act(action); });
+}
+
+std::vector<toolkit::RailEntry> QualityTool::rail() const {
+  return {{toolkit::RailPlace::quality, "Quality", &input::binding_of(kKeys, command_of(QualityCommand::panel)), is_open()}};
+}
+
+void QualityTool::draw_options(panels::OptionRow& row) {
+  const auto key = [](QualityCommand command) -> const input::KeyBinding& { return input::binding_of(kKeys, command_of(command)); };
+  row.command("<", key(QualityCommand::previous_error));
+  row.command(">", key(QualityCommand::next_error));
+  row.words("repair");
+  row.command("damage", key(QualityCommand::repair_damaged));
+  row.command("selection", key(QualityCommand::repair_selection));
+  row.command("all", key(QualityCommand::repair_all));
+  row.words("relax");
+  row.command("nodes", key(QualityCommand::relax_selection));
+  row.command("parts", key(QualityCommand::relax_part));
+  row.command("failed", key(QualityCommand::relax_failed));
+  row.toggle("only damage", wish_.damaged, key(QualityCommand::damaged_only));
+}
+
+std::string QualityTool::setting_words() const {
+  return wish_.damaged ? "Quality \u00b7 only what edits made worse" : "Quality \u00b7 all shells";
 }
 
 void QualityTool::draw_status(PanelLayout&) {
@@ -280,7 +304,7 @@ void QualityTool::draw_status(PanelLayout&) {
 void QualityTool::draw_dialog(int kind, bool opened, PanelLayout& layout) {
   const auto which = static_cast<MendLimit>(kind);
   const panels::NumberFacts facts{title_of(which), hint_of(which), typed_limit(limits_, which), limit_problem_};
-  if (const std::optional<std::string> entered = panels::number_box(facts, layout.picture, opened, entry_))
+  if (const std::optional<std::string> entered = panels::number_box(facts, layout.view(), opened, entry_))
     layout.ask([this, which, text = *entered] { enter_limit(which, text); });
 }
 

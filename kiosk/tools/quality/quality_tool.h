@@ -21,7 +21,12 @@ namespace prismesh::kiosk::tools::quality {
 
 std::span<const input::KeyBinding> keys();
 
-class QualityTool final : public toolkit::Tool, public toolkit::HidesGlyphs, public toolkit::HasStatus, public toolkit::HasDialogs {
+class QualityTool final : public toolkit::Tool,
+                          public toolkit::HidesGlyphs,
+                          public toolkit::HasStatus,
+                          public toolkit::InRail,
+                          public toolkit::HasOptions,
+                          public toolkit::HasDialogs {
  public:
   explicit QualityTool(toolkit::ToolContext& context) : context_(context), link_(context.link) {}
 
@@ -32,14 +37,17 @@ class QualityTool final : public toolkit::Tool, public toolkit::HidesGlyphs, pub
   void add_to_picture(render::Picture& picture) const override;
   std::string glyphs_hidden() const override;
   std::string_view panel_name() const override { return "quality"; }
-  void draw_left(panels::PanelLayout& layout) override;
+  void draw_panel(panels::PanelLayout& layout) override;
+  std::vector<toolkit::RailEntry> rail() const override;
+  void draw_options(panels::OptionRow& row) override;
+  std::string setting_words() const override;
   void panel_changed() override;
   void draw_status(panels::PanelLayout& layout) override;
   void draw_dialog(int kind, bool opened, panels::PanelLayout& layout) override;
 
  private:
   bool is_the_error(const ipc::QualityError& error) const { return error.shell == error_shell_ && error.node == error_node_; }
-  bool is_open() const { return context_.open.left == this; }
+  bool is_open() const { return context_.open.in_hand == this; }
   void follow_figures();
   void relax(mesh::document::Scope scope);
   void relax_from(const toolkit::Pointer& pointer);

@@ -55,8 +55,8 @@ SelectMode mode_of_keys() {
 
 }  // namespace
 
-ExpressionAsked expression_box(const ExpressionFacts& facts, display::PixelSize picture, bool opened, ExpressionEntry& entry) {
-  panels::begin_low("Expression", picture, ImGui::GetFontSize() * 44);
+ExpressionAsked expression_box(const ExpressionFacts& facts, const panels::Place& room, bool opened, ExpressionEntry& entry) {
+  panels::begin_low("Expression", room, ImGui::GetFontSize() * 44);
   if (opened) entry = ExpressionEntry{};
   const float field_x = ImGui::GetCursorScreenPos().x + ImGui::GetStyle().FramePadding.x;
   const bool entered = panels::entry_field("##expression", *facts.earlier, opened, entry.field);

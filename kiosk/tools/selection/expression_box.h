@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "kiosk/display/window.h"
 #include "kiosk/panels/entry_box.h"
+#include "kiosk/panels/places.h"
 #include "mesh/document/edit.h"
 
 namespace prismesh::kiosk::tools::selection {
@@ -45,6 +45,6 @@ struct ExpressionAsked {
 };
 
 /// Lays the box out (inside Gui::layout). `opened`: it wasn't there the last time.
-ExpressionAsked expression_box(const ExpressionFacts& facts, display::PixelSize picture, bool opened, ExpressionEntry& entry);
+ExpressionAsked expression_box(const ExpressionFacts& facts, const panels::Place& room, bool opened, ExpressionEntry& entry);
 
 }  // namespace prismesh::kiosk::tools::selection

@@ -27,15 +27,18 @@ void choice(const char* label, std::array<const char*, 2> names, bool first, Sel
 
 }  // namespace
 
+const char* bounds_words(mesh::document::RegionBy by) {
+  constexpr std::array<const char*, kRegionBounds> kBounds{"features", "single creases", "part", "piece", "free edge"};
+  return kBounds[static_cast<std::size_t>(by)];
+}
+
 std::optional<RegionSettings> select_section(const SelectFacts& facts, PanelLayout& layout) {
   panels::section("Selection");
   panels::fact("nodes", panels::grouped(facts.nodes));
   if (facts.shells > 0) panels::fact("shells", panels::grouped(facts.shells));
   choice("draw", {"lasso", "rectangle"}, facts.lasso, SelectionCommand::outline_kind, layout);
   choice("takes", {"visible", "through"}, !facts.through, SelectionCommand::toggle_through, layout);
-  constexpr std::array<const char*, kRegionBounds> kBounds{"features", "single creases", "part", "piece", "free edge"};
-  panels::setting("region", kBounds[static_cast<std::size_t>(facts.region.by)],
-                  input::binding_of(kKeys, command_of(SelectionCommand::region_by)), layout);
+  panels::setting("region", bounds_words(facts.region.by), input::binding_of(kKeys, command_of(SelectionCommand::region_by)), layout);
   std::optional<RegionSettings> wanted;
   if (has_angle(facts.region.by)) {
     auto angle = static_cast<float>(facts.region.angle);

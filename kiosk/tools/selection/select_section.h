@@ -15,6 +15,9 @@ inline bool has_angle(mesh::document::RegionBy by) {
   return by == mesh::document::RegionBy::features || by == mesh::document::RegionBy::creases;
 }
 
+/// What bounds a region, in a word or two.
+const char* bounds_words(mesh::document::RegionBy by);
+
 struct RegionSettings {
   mesh::document::RegionBy by = mesh::document::RegionBy::features;
   double angle = 30;  ///< degrees

@@ -22,6 +22,7 @@ enum class SelectionCommand : std::uint8_t {
   wider_angle,
   narrower_angle,
   region_across_welds,
+  take_in_hand,
 };
 
 constexpr input::Command command_of(SelectionCommand command) { return {kName, static_cast<std::uint8_t>(command)}; }

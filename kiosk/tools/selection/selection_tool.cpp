@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "kiosk/input/key_table.h"
 #include "kiosk/toolkit/edits.h"
 #include "kiosk/toolkit/open_panels.h"
 #include "kiosk/toolkit/picking.h"
@@ -49,6 +50,7 @@ std::string_view SelectionTool::name() const { return kName; }
 
 void SelectionTool::command(std::uint8_t number, const toolkit::Pointer& pointer) {
   switch (static_cast<SelectionCommand>(number)) {
+    case SelectionCommand::take_in_hand: toolkit::take_in_hand(context_, nullptr); break;
     case SelectionCommand::expression:
       if (context_.shown.snapshot) toolkit::open_dialog(context_, this);
       break;
@@ -119,7 +121,7 @@ void SelectionTool::take(const OutlineDone& outline) {
   const display::PixelSize size = context_.view.size;
   std::vector<Pixel> way =
       is_rectangle(outline.other_kind) ? corners_of(rectangle_of(outline.way.front(), outline.way.back())) : outline.way;
-  if (context_.view.two_views) way = kept_right_of(way, 0.5 * size.width);  // the picture is cut there
+  if (context_.view.two_views) way = kept_right_of(way, toolkit::two_views(context_.view).border * size.width);  // the picture is cut there
   if (way.size() < kMinLassoPoints) return;
   if (outline.mode == SelectMode::set) context_.selection.last_clicked.reset();
   context_.selection.last_region.reset();
@@ -216,7 +218,28 @@ void SelectionTool::add_to_picture(render::Picture& picture) const {
   picture.lasso = lasso_;
 }
 
-void SelectionTool::draw_document_section(PanelLayout& layout) {
+std::vector<toolkit::RailEntry> SelectionTool::rail() const {
+  return {{toolkit::RailPlace::select, "Select", &input::binding_of(kKeys, command_of(SelectionCommand::take_in_hand)),
+           context_.open.in_hand == nullptr}};
+}
+
+void SelectionTool::draw_options(panels::OptionRow& row) {
+  const auto key = [](SelectionCommand command) -> const input::KeyBinding& { return input::binding_of(kKeys, command_of(command)); };
+  row.value("draw", draws_lasso_ ? "lasso" : "rectangle", key(SelectionCommand::outline_kind));
+  row.value("takes", through_ ? "all through" : "visible", key(SelectionCommand::toggle_through));
+  row.value("region", bounds_words(region_by_), key(SelectionCommand::region_by));
+  row.command("grow", key(SelectionCommand::grow));
+  row.command("shrink", key(SelectionCommand::shrink));
+  row.command("invert", key(SelectionCommand::invert));
+  row.command("by expression", key(SelectionCommand::expression));
+}
+
+std::string SelectionTool::setting_words() const {
+  return std::string("Select \u00b7 ") + (draws_lasso_ ? "lasso" : "rectangle") + (through_ ? " through" : "") + " \u00b7 " +
+         bounds_words(region_by_);
+}
+
+void SelectionTool::draw_panel(PanelLayout& layout) {
   const ipc::SnapshotInfo& info = context_.shown.snapshot->info();
   SelectFacts facts;
   facts.nodes = info.selected_nodes;
@@ -237,7 +260,7 @@ void SelectionTool::draw_dialog(int, bool opened, PanelLayout& layout) {
     if (counted->failed) facts.problem = Error{counted->failed->file, counted->failed->line, counted->failed->message}.text();
     if (counted->failed && counted->failed->file == "expression") facts.column = counted->failed->line;
   }
-  const ExpressionAsked asked = expression_box(facts, layout.picture, opened, entry_);
+  const ExpressionAsked asked = expression_box(facts, layout.view(), opened, entry_);
   if (asked.typed)
     layout.ask([this, typed = *asked.typed] {
       if (!typed.text.empty()) context_.link.count.ask(typed.text, typed.kind);

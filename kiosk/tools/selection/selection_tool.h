@@ -22,9 +22,13 @@ class SelectionTool final : public toolkit::Tool,
                             public toolkit::Drags,
                             public toolkit::Clears,
                             public toolkit::SetsRegion,
+                            public toolkit::InRail,
+                            public toolkit::HasOptions,
                             public toolkit::HasDialogs {
  public:
-  explicit SelectionTool(toolkit::ToolContext& context) : context_(context), expressions_(context.options.expressions) {}
+  explicit SelectionTool(toolkit::ToolContext& context) : context_(context), expressions_(context.options.expressions) {
+    context.open.usual = this;
+  }
 
   std::string_view name() const override;
   void command(std::uint8_t number, const toolkit::Pointer& pointer) override;
@@ -34,7 +38,10 @@ class SelectionTool final : public toolkit::Tool,
   bool dragging() const override { return rubber_band_.has_value() || !lasso_.empty(); }
   void cancel_gesture() override;
   void add_to_picture(render::Picture& picture) const override;
-  void draw_document_section(panels::PanelLayout& layout) override;
+  void draw_panel(panels::PanelLayout& layout) override;
+  std::vector<toolkit::RailEntry> rail() const override;
+  void draw_options(panels::OptionRow& row) override;
+  std::string setting_words() const override;
   void draw_dialog(int kind, bool opened, panels::PanelLayout& layout) override;
 
  private:

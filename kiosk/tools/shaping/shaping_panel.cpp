@@ -89,8 +89,7 @@ ShapingOptions falloff_section(const ShapingOptions& now, PanelLayout& layout) {
 
 std::optional<ShapingOptions> shaping_panel(const ShapingFacts& facts, PanelLayout& layout) {
   const ShapingOptions& now = facts.options;
-  panels::begin_left("Shaping", layout.picture);
-  panels::panel_title("Shaping", "T closes; every pull goes by this");
+  panels::panel_title("Pull", "every pull goes by this");
   const ShapingOptions wanted = falloff_section(now, layout);
   section("Ends and origin");
   set_by("free edges", std::string(name_of(now.free_ends)), ShapingCommand::free_ends, layout);
@@ -106,17 +105,12 @@ std::optional<ShapingOptions> shaping_panel(const ShapingFacts& facts, PanelLayo
   section("By number");
   set_by("typed numbers", std::string(name_of(facts.handle)), ShapingCommand::next_handle, layout);
   set_by("how far", "type it", ShapingCommand::type_number, layout);
-  ImGui::End();
   return wanted != now ? std::optional(wanted) : std::nullopt;
 }
 
-void pull_section(const PullFacts& facts) {
-  section(facts.what.c_str());
-  if (facts.degrees)
-    panels::fact("angle", fmt::format("{:.2f}\u00b0", *facts.degrees));
-  else
-    panels::fact("distance", length_text(facts.length, facts.length_unit));
-  panels::fact("nodes that move", panels::grouped(facts.nodes));
+std::string pull_words(const PullFacts& facts) {
+  const std::string by = facts.degrees ? fmt::format("{:.2f}\u00b0", *facts.degrees) : length_text(facts.length, facts.length_unit);
+  return fmt::format("{} {}   {} {}", facts.what, by, panels::grouped(facts.nodes), facts.nodes == 1 ? "node moves" : "nodes move");
 }
 
 }  // namespace prismesh::kiosk::tools::shaping

@@ -1,4 +1,4 @@
-// The panel at the left that sets how pulls fade out, and the section that says how far something is pulled.
+// The panel that sets how pulls fade out, and the words that say how far something is pulled.
 #pragma once
 
 #include <cstdint>
@@ -25,6 +25,7 @@ struct PullFacts {
   std::optional<double> degrees{};  ///< in place of a length
   std::uint64_t nodes = 0;          ///< that move
 };
-void pull_section(const PullFacts& facts);
+/// "Lift 12.4 mm   416 nodes move".
+std::string pull_words(const PullFacts& facts);
 
 }  // namespace prismesh::kiosk::tools::shaping

@@ -51,7 +51,7 @@ void ShapingTool::command(std::uint8_t number, const toolkit::Pointer& pointer) 
     case ShapingCommand::along_nodes: pick_two_nodes(TwoNodes::falloff); break;
     case ShapingCommand::along_edge: falloff_from_edge(pointer); break;
     case ShapingCommand::along_view: set_falloff(next_falloff_of_view(options_.along, toolkit::aim(context_.view).view.rotation)); break;
-    case ShapingCommand::panel: toolkit::toggle_left(context_, this); break;
+    case ShapingCommand::panel: toolkit::toggle_in_hand(context_, this); break;
     default: change_option(static_cast<ShapingCommand>(number)); break;
   }
 }
@@ -174,7 +174,7 @@ void ShapingTool::trace_picture() {
   if (followed != traced_followed_) context_.trace.line(fmt::format("followed edges {}", traced_followed_ = followed));
 }
 
-void ShapingTool::draw_left(PanelLayout& layout) {
+void ShapingTool::draw_panel(PanelLayout& layout) {
   const ShapingFacts facts{options_, context_.shown.snapshot->info().length_unit, handle_};
   if (const std::optional<ShapingOptions> wanted = shaping_panel(facts, layout))
     layout.ask([this, options = *wanted] {
@@ -183,8 +183,35 @@ void ShapingTool::draw_left(PanelLayout& layout) {
     });
 }
 
-void ShapingTool::draw_document_section(PanelLayout&) {
-  if (!pull_) return;
+std::vector<toolkit::RailEntry> ShapingTool::rail() const {
+  const auto key = [](ShapingCommand command) { return &input::binding_of(kKeys, command_of(command)); };
+  const bool in_hand = context_.open.in_hand == this;
+  return {{toolkit::RailPlace::pull, "Pull", key(ShapingCommand::panel), in_hand},
+          {toolkit::RailPlace::turn, "Turn", key(ShapingCommand::pick_axis),
+           axis_.has_value() || (axis_pick_.active() && picks_ == TwoNodes::axis)}};
+}
+
+void ShapingTool::draw_options(panels::OptionRow& row) {
+  const auto key = [](ShapingCommand command) -> const input::KeyBinding& { return input::binding_of(kKeys, command_of(command)); };
+  const std::string& unit = context_.shown.snapshot->info().length_unit;
+  row.value("falloff", std::string(mesh::shape::name(options_.profile)), key(ShapingCommand::falloff));
+  row.value("mirror",
+            options_.symmetry == DeckAxis::none ? "off" : std::string(kDeckAxisNames[static_cast<std::size_t>(options_.symmetry)]),
+            key(ShapingCommand::symmetry));
+  row.value("free edges", std::string(name_of(options_.free_ends)), key(ShapingCommand::free_ends));
+  row.value("along", options_.along.what, key(ShapingCommand::along));
+  row.value("at most", options_.max_move ? panels::length_text(*options_.max_move, unit) : "no limit", key(ShapingCommand::move_limit));
+  row.command("by number", key(ShapingCommand::type_number));
+}
+
+std::string ShapingTool::setting_words() const {
+  std::string words = "Pull \u00b7 " + std::string(mesh::shape::name(options_.profile)) + " \u00b7 mirror ";
+  words += options_.symmetry == DeckAxis::none ? "off" : kDeckAxisNames[static_cast<std::size_t>(options_.symmetry)];
+  return words;
+}
+
+std::string ShapingTool::live_words() const {
+  if (!pull_) return {};
   PullFacts facts;
   facts.what = std::string(name_of(pull_->pull.handle()));
   facts.length_unit = context_.shown.snapshot->info().length_unit;
@@ -194,7 +221,7 @@ void ShapingTool::draw_document_section(PanelLayout&) {
     default: facts.length = pulled_.by.norm(); break;
   }
   if (const link::RunningDrag* drag = context_.link.drag.running(); drag != nullptr && drag->begun()) facts.nodes = drag->facts().nodes;
-  pull_section(facts);
+  return pull_words(facts);
 }
 
 void ShapingTool::draw_dialog(int, bool opened, PanelLayout& layout) {
@@ -207,7 +234,7 @@ void ShapingTool::draw_dialog(int, bool opened, PanelLayout& layout) {
   facts.hint = pull ? typed_hint(handle_, typed_direction()) : "a number; nothing takes it away";
   facts.begun = typing_.begun;
   facts.problem = typing_.problem;
-  if (const std::optional<std::string> entered = panels::number_box(facts, layout.picture, opened, entry_))
+  if (const std::optional<std::string> entered = panels::number_box(facts, layout.view(), opened, entry_))
     layout.ask([this, text = *entered] { enter_number(text); });
 }
 

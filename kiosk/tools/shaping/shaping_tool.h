@@ -31,6 +31,9 @@ class ShapingTool final : public toolkit::Tool,
                           public toolkit::SetsShaping,
                           public toolkit::FollowsView,
                           public toolkit::TracesPicture,
+                          public toolkit::InRail,
+                          public toolkit::HasOptions,
+                          public toolkit::TellsLive,
                           public toolkit::HasDialogs {
  public:
   explicit ShapingTool(toolkit::ToolContext& context)
@@ -59,8 +62,11 @@ class ShapingTool final : public toolkit::Tool,
   std::string guidance() const override;
   void trace_picture() override;
   std::string_view panel_name() const override { return "shaping"; }
-  void draw_left(panels::PanelLayout& layout) override;
-  void draw_document_section(panels::PanelLayout& layout) override;
+  void draw_panel(panels::PanelLayout& layout) override;
+  std::string live_words() const override;
+  std::vector<toolkit::RailEntry> rail() const override;
+  void draw_options(panels::OptionRow& row) override;
+  std::string setting_words() const override;
   void draw_dialog(int kind, bool opened, panels::PanelLayout& layout) override;
 
  private:

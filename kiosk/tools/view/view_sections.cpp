@@ -66,34 +66,35 @@ void depth_section(const DepthFacts& depth, PanelLayout& layout) {
 
 }  // namespace
 
-void picture_section(const std::string& colours, const std::string& profile, PanelLayout& layout) {
-  section("Picture");
+std::optional<std::string> picture_section(const std::string& colours, const std::string& profile, const std::vector<std::string>& profiles,
+                                           PanelLayout& layout) {
+  std::optional<std::string> chosen;
+  panels::setting("colour by", colours, input::binding_of(kKeys, command_of(ViewCommand::colour_mode)), layout);
   ImGui::AlignTextToFramePadding();
-  ImGui::TextDisabled("colour by");
-  ImGui::SameLine();
-  if (ImGui::SmallButton(colours.c_str())) layout.ask(command_of(ViewCommand::colour_mode));
-  panels::hint(input::binding_of(kKeys, command_of(ViewCommand::colour_mode)));
   ImGui::TextDisabled("display");
   ImGui::SameLine();
-  if (ImGui::SmallButton(profile.c_str())) layout.ask(command_of(ViewCommand::next_profile));
+  ImGui::SetNextItemWidth(-1);
+  if (ImGui::BeginCombo("##display", profile.c_str(), ImGuiComboFlags_HeightLargest)) {
+    chosen = profile_entries(profile, profiles, layout);
+    ImGui::EndCombo();
+  }
+  panels::note_item(layout, "display", profile);
+  return chosen;
+}
+
+std::optional<std::string> profile_entries(const std::string& now, const std::vector<std::string>& profiles, PanelLayout& layout) {
+  std::optional<std::string> chosen;
+  ImGui::Separator();
+  for (const std::string& name : profiles) {
+    if (ImGui::MenuItem(name.c_str(), nullptr, name == now)) chosen = name;
+    panels::note_item(layout, "display " + name, name == now ? "on" : "off");
+  }
+  return chosen;
 }
 
 void stereo_sections(const StereoFacts& facts, PanelLayout& layout) {
   if (facts.eyes) eyes_section(*facts.eyes);
   if (facts.depth) depth_section(*facts.depth, layout);
-}
-
-float stereo_height(const StereoFacts& facts, float width) {
-  const float line = ImGui::GetTextLineHeightWithSpacing();
-  float height = 0;
-  if (facts.eyes) {
-    height += line * (2.6f + (facts.eyes->mask.empty() ? 0 : 1) + (facts.eyes->simulated ? 1 : 0));
-    ImGui::PushFont(small_font());
-    if (!facts.eyes->advice.empty()) height += ImGui::CalcTextSize(facts.eyes->advice.c_str(), nullptr, false, width).y + kGrid / 2;
-    ImGui::PopFont();
-  }
-  if (facts.depth) height += line * 1.6f + 3 * ImGui::GetFrameHeightWithSpacing();
-  return height;
 }
 
 }  // namespace prismesh::kiosk::tools::view

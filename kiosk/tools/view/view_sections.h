@@ -3,14 +3,19 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "kiosk/panels/panel_layout.h"
 #include "kiosk/toolkit/eyes_facts.h"
 
 namespace prismesh::kiosk::tools::view {
 
-/// Lays out what the model is coloured by, in a word, and the display profile (inside Gui::layout).
-void picture_section(const std::string& colours, const std::string& profile, panels::PanelLayout& layout);
+/// Lays out what the model is coloured by, in a word, and the display profile (inside Gui::layout). Returns another profile, if the user
+/// chose one.
+std::optional<std::string> picture_section(const std::string& colours, const std::string& profile, const std::vector<std::string>& profiles,
+                                           panels::PanelLayout& layout);
+/// The profiles as entries of a menu or list.
+std::optional<std::string> profile_entries(const std::string& now, const std::vector<std::string>& profiles, panels::PanelLayout& layout);
 
 /// How much depth the picture has.
 struct DepthFacts {
@@ -25,7 +30,5 @@ struct StereoFacts {
   std::optional<DepthFacts> depth;
 };
 void stereo_sections(const StereoFacts& facts, panels::PanelLayout& layout);
-/// Their height in pixels in a panel of that inner width.
-float stereo_height(const StereoFacts& facts, float width);
 
 }  // namespace prismesh::kiosk::tools::view

@@ -21,6 +21,12 @@ using toolkit::PictureView;
 
 constexpr double kZoomPerStep = 1.15;
 
+std::vector<std::string> profile_names() {
+  std::vector<std::string> names;
+  for (const stereo::Profile& profile : stereo::built_in_profiles()) names.push_back(profile.name);
+  return names;
+}
+
 }  // namespace
 
 std::span<const input::KeyBinding> keys() { return kKeys; }
@@ -79,14 +85,22 @@ void ViewTool::orbit(const Orbited& orbit) {
 
 void ViewTool::pan(const Panned& pan) {
   PictureView& view = context_.view;
-  view.view = stereo::pan(view.view, Eigen::Vector2d(pan.dx, -pan.dy) * toolkit::aim(view).mm_per_pixel());
+  if (!panned_ || panned_->from != pan.from) {
+    const auto node = toolkit::shown_node_at(context_, toolkit::in_picked_view(view, pan.from));
+    panned_ = Held{pan.from, node ? std::optional(context_.shown.snapshot->position(node->value)) : std::nullopt};
+  }
+  // What was under the pointer where the drag began stays under it: what is nearer than the screen moves less far to seem to move as far.
+  const stereo::Aim aim = toolkit::aim(view);
+  const double before_mm = panned_->point ? stereo::to_screen(aim.view, *panned_->point).z() : 0;
+  const double nearer = std::clamp((aim.eye_mm.z() - before_mm) / std::max(aim.eye_mm.z(), 1.0), 0.1, 10.0);
+  view.view = stereo::pan(view.view, Eigen::Vector2d(pan.dx, -pan.dy) * aim.mm_per_pixel() * nearer);
   context_.tools.view_moved(pan.at);
 }
 
 void ViewTool::zoom(const Zoomed& zoom) {
   PictureView& view = context_.view;
   Eigen::Vector2d place = stereo::mm_of_pixel(toolkit::aim(view), zoom.at);
-  if (view.two_views) place.x() -= (zoom.at.x() > 0.5 * view.size.width ? 1 : -1) * toolkit::pane_shift_mm(view);
+  if (view.two_views) place.x() -= (toolkit::is_beside(view, zoom.at) ? -1 : 1) * toolkit::pane_shift_mm(view);
   view.view = stereo::zoom(view.view, std::pow(kZoomPerStep, zoom.steps), place);
   context_.tools.view_moved();
 }
@@ -101,10 +115,9 @@ void ViewTool::look_from(std::string_view side) {
 void ViewTool::fit() {
   if (context_.renderer.bounds().empty()) return;
   PictureView& view = context_.view;
-  Eigen::Vector2d free = stereo::screen_size_mm(view.profile, view.size.width, view.size.height);
-  free.x() *= std::max(0.2, 1 - view.covered_width / std::max(view.size.width, 1));
-  if (view.two_views) free.x() *= 0.5;
-  view.view = context_.renderer.fitted(view.view, free, view.seen.between_eyes_mm.z());
+  Eigen::Vector2d room = toolkit::room_mm(view);
+  if (view.two_views) room.x() *= 0.5;
+  view.view = context_.renderer.fitted(view.view, room, view.seen.between_eyes_mm.z());
   if (view.depth.keeps_selection()) toolkit::bring_selection(context_);
   context_.tools.view_moved();
   ++context_.changes;
@@ -118,12 +131,18 @@ void ViewTool::next_colours() {
 }
 
 void ViewTool::next_profile() {
-  stereo::Profile& profile = context_.view.profile;
+  const std::vector<std::string> names = profile_names();
+  const auto current = std::ranges::find(names, context_.view.profile.name);
+  take_profile(current == names.end() || current + 1 == names.end() ? names.front() : *(current + 1));
+}
+
+void ViewTool::take_profile(const std::string& name) {
   const auto profiles = stereo::built_in_profiles();
-  const auto current = std::find_if(profiles.begin(), profiles.end(), [&](const stereo::Profile& p) { return p.name == profile.name; });
-  profile = current == profiles.end() || current + 1 == profiles.end() ? profiles.front() : *(current + 1);
+  const auto found = std::ranges::find(profiles, name, &stereo::Profile::name);
+  if (found == profiles.end()) return;
+  context_.view.profile = *found;
   context_.tools.view_moved();
-  context_.trace.line("profile " + profile.name);
+  context_.trace.line("profile " + name);
 }
 
 void ViewTool::keep_selection(bool keep) {
@@ -151,13 +170,21 @@ void ViewTool::look(std::int64_t now_ns) {
 
 // --- panels ---
 
-void ViewTool::draw_document_section(PanelLayout& layout) {
-  if (context_.tools.pulling()) return;  // the pull needs the room
+void ViewTool::draw_tab(PanelLayout& layout) {
   const std::string others = context_.tools.colours();
   const char* own = context_.view.colour == render::ColourMode::quality       ? "quality"
                     : context_.view.colour == render::ColourMode::part_states ? "parts' state"
                                                                               : "part";
-  picture_section(others.empty() ? own : others, context_.view.profile.name, layout);
+  if (const auto chosen = picture_section(others.empty() ? own : others, context_.view.profile.name, profile_names(), layout))
+    layout.ask([this, name = *chosen] { take_profile(name); });
+  stereo_sections(stereo_facts(), layout);
+}
+
+/// The display's profiles by name, in the menu of the display.
+void ViewTool::draw_menu_entries(input::Menu menu, PanelLayout& layout) {
+  if (menu != input::Menu::display) return;
+  if (const auto chosen = profile_entries(context_.view.profile.name, profile_names(), layout))
+    layout.ask([this, name = *chosen] { take_profile(name); });
 }
 
 StereoFacts ViewTool::stereo_facts() const {
@@ -167,9 +194,5 @@ StereoFacts ViewTool::stereo_facts() const {
   if (context_.view.profile.stereo()) facts.depth = DepthFacts{depth.percent(), depth.degrees(), depth.keeps_selection()};
   return facts;
 }
-
-void ViewTool::draw_status(PanelLayout& layout) { stereo_sections(stereo_facts(), layout); }
-
-double ViewTool::status_height(double width) const { return static_cast<double>(stereo_height(stereo_facts(), static_cast<float>(width))); }
 
 }  // namespace prismesh::kiosk::tools::view

@@ -17,7 +17,11 @@ namespace prismesh::kiosk::tools::view {
 
 std::span<const input::KeyBinding> keys();
 
-class ViewTool final : public toolkit::Tool, public toolkit::TakesGestures, public toolkit::MovesView, public toolkit::HasStatus {
+class ViewTool final : public toolkit::Tool,
+                       public toolkit::TakesGestures,
+                       public toolkit::MovesView,
+                       public toolkit::HasTab,
+                       public toolkit::HasMenuEntries {
  public:
   explicit ViewTool(toolkit::ToolContext& context) : context_(context), shared_(context) {}
 
@@ -27,9 +31,9 @@ class ViewTool final : public toolkit::Tool, public toolkit::TakesGestures, publ
   Result<void> prepare() override;
   void document_changed() override { fit(); }
   void look(std::int64_t now_ns) override;
-  void draw_document_section(panels::PanelLayout& layout) override;
-  void draw_status(panels::PanelLayout& layout) override;
-  double status_height(double width) const override;
+  const char* tab() const override { return "Display"; }
+  void draw_tab(panels::PanelLayout& layout) override;
+  void draw_menu_entries(input::Menu menu, panels::PanelLayout& layout) override;
 
  private:
   void orbit(const input::Orbited& orbit);
@@ -39,12 +43,19 @@ class ViewTool final : public toolkit::Tool, public toolkit::TakesGestures, publ
   void fit();
   void next_colours();
   void next_profile();
+  void take_profile(const std::string& name);
   void keep_selection(bool keep);
   StereoFacts stereo_facts() const;
 
   toolkit::ToolContext& context_;
   SharedView shared_;
+  /// What was under the pointer where a drag began.
+  struct Held {
+    input::Pixel from;
+    std::optional<mesh::Vec3> point;
+  };
   std::optional<input::Pixel> orbit_from_;  ///< where the drag began that turned the view last
+  std::optional<Held> panned_;              ///< of the drag that moved it last
 };
 
 }  // namespace prismesh::kiosk::tools::view

@@ -1,0 +1,157 @@
+// The panels about the view, driven as a hand drives them: by what is on the screen.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/station/station_test_case.h"
+
+namespace prismesh::test {
+namespace {
+
+using testing::HasSubstr;
+
+class FrameTest : public StationTestCase {
+ protected:
+  /// The state of an item, once it says that.
+  void expect_state(const std::string& name, const std::string& words) {
+    const auto says = [&] {
+      const auto item = station_->item(name);
+      return item && item->state.find(words) != std::string::npos;
+    };
+    if (says()) return;
+    const std::string beginning = "item \"" + name + "\" ";
+    EXPECT_FALSE(
+        station_->kiosk()
+            .wait_until([&](const std::string& line) { return line.starts_with(beginning) && line.find(words) != std::string::npos; })
+            .empty())
+        << name << " never said " << words;
+  }
+  /// The box around all nodes on the screen: left, top, right, bottom.
+  std::array<double, 4> box() {
+    const Station::Aim aim = station_->settled_aim();
+    std::array<double, 4> box{1e9, 1e9, -1e9, -1e9};
+    for (const auto& [id, point] : nodes_) {
+      const auto [x, y] = aim.pixel_of(point);
+      box = {std::min(box[0], x), std::min(box[1], y), std::max(box[2], x), std::max(box[3], y)};
+    }
+    return box;
+  }
+  void expect_in_the_middle_of_the_view() {
+    const auto [left, top, right, bottom] = box();
+    const Station::Item view = *station_->item("view");
+    EXPECT_GE(left, view.x);
+    EXPECT_GE(top, view.y);
+    EXPECT_LE(right, view.x + view.width);
+    EXPECT_LE(bottom, view.y + view.height);
+    // The view is fitted to the box about the model, whose corners nothing reaches.
+    EXPECT_NEAR(0.5 * (left + right), view.middle()[0], 0.03 * view.width);
+    EXPECT_NEAR(0.5 * (top + bottom), view.middle()[1], 0.03 * view.height);
+    EXPECT_GE(std::max((right - left) / view.width, (bottom - top) / view.height), 0.7) << "it fills the view";
+  }
+};
+
+TEST_F(FrameTest, the_model_fills_what_the_panels_leave_in_mono_and_stereo) {
+  station_->start_kiosk();
+  expect_in_the_middle_of_the_view();
+  for (const char* profile : {"anaglyph", "side-by-side", "mono"}) {
+    if (station_->item("menu Menu")) {  // the large type of stereo has no room for all of them
+      station_->click_item("menu Menu");
+      ASSERT_FALSE(station_->kiosk().wait_for("item \"menu Display\"").empty());
+      station_->settled_aim();
+    }
+    station_->click_item("menu Display");
+    ASSERT_FALSE(station_->kiosk().wait_for(std::string("item \"display ") + profile).empty());
+    station_->settled_aim();
+    station_->kiosk().skip_lines();
+    station_->click_item(std::string("display ") + profile);
+    ASSERT_FALSE(station_->kiosk().wait_for(std::string("profile ") + profile).empty());
+    station_->settled_aim();
+    station_->key("f");
+    expect_in_the_middle_of_the_view();
+    station_->show_people(profile);
+  }
+}
+
+TEST_F(FrameTest, the_rail_takes_tools_in_hand_and_the_status_line_says_which) {
+  station_->start_kiosk();
+  expect_state("status setting", "Select");
+  const std::pair<const char*, const char*> tools[] = {{"Pull", "Pull"},       {"Quality", "Quality"}, {"Contact", "Contact"},
+                                                       {"Compare", "Compare"}, {"Mesh", "Mesh"},       {"Select", "Select"}};
+  for (const auto& [button, words] : tools) {
+    station_->click_item(std::string("rail ") + button);
+    expect_state(std::string("rail ") + button, "on");
+    expect_state("status setting", words);
+  }
+  station_->click_item("rail Pull");
+  expect_state("option mirror", "off");
+  station_->click_item("option mirror");
+  expect_state("option mirror", "x");
+  expect_state("status setting", "mirror x");
+}
+
+TEST_F(FrameTest, undo_and_save_are_seen_and_clicked) {
+  station_->start_kiosk();
+  expect_state("save", "saved");
+  expect_state("undo", "can't");
+  const auto selected = station_->select_middle();
+  expect_state("status selection", std::to_string(selected.size()) + " nodes selected");
+  expect_state("undo", "can");
+  station_->settled_aim();
+  station_->click_item("undo");
+  ASSERT_TRUE(station_->wait_for_selection(0));
+  expect_state("redo", "can");
+  station_->settled_aim();
+  station_->click_item("redo");
+  ASSERT_TRUE(station_->wait_for_selection(selected.size()));
+}
+
+TEST_F(FrameTest, what_is_under_the_pointer_is_told) {
+  station_->start_kiosk();
+  const std::int64_t id = std::next(nodes_.begin(), static_cast<long>(nodes_.size() / 2))->first;
+  const auto [x, y] = station_->settled_aim().pixel_of(nodes_.at(id));
+  station_->move(x, y);
+  expect_state("status pointed", "node " + std::to_string(id) + " ");
+  EXPECT_THAT(station_->item("status pointed")->state, HasSubstr("part 7 Roof panel"));
+  const Station::Item view = *station_->item("view");
+  station_->move(view.x + 8, view.y + 8);
+  EXPECT_FALSE(station_->kiosk().wait_for("item \"status pointed\" gone").empty()) << "nothing is there";
+}
+
+TEST_F(FrameTest, an_open_menu_has_pointer_and_esc_to_itself) {
+  station_->start_kiosk();
+  const auto selected = station_->select_middle();
+  const std::string generation = station_->kiosk().last("generation ");
+  const auto [x, y] = station_->settled_aim().pixel_of(nodes_.begin()->second);
+  for (const bool by_key : {true, false}) {
+    station_->click_item("menu Parts");
+    ASSERT_FALSE(station_->kiosk().wait_for("item \"entry ").empty());
+    station_->settled_aim();
+    if (by_key)
+      station_->key("Escape");
+    else
+      station_->click(x, y);
+    station_->settled_aim();
+    EXPECT_FALSE(station_->item("entry show all parts")) << "the menu is closed";
+  }
+  EXPECT_EQ(station_->kiosk().last("generation "), generation) << "the selection stays";
+}
+
+TEST_F(FrameTest, a_dragged_border_moves_the_model_along_and_is_kept) {
+  station_->start_kiosk();
+  const Station::Item before = *station_->item("view");
+  const auto border = station_->item("border dock")->middle();
+  station_->drag(border[0], border[1], border[0] - 60, border[1]);
+  station_->settled_aim();
+  const Station::Item after = *station_->item("view");
+  EXPECT_NEAR(after.width, before.width - 60, 6);
+  station_->key("f");
+  expect_in_the_middle_of_the_view();
+  station_->open_in_another_kiosk(station_->deck());
+  ASSERT_FALSE(station_->kiosk()
+                   .wait_until([](const std::string& line) { return line.starts_with("picture ") && !line.ends_with("none"); })
+                   .empty());
+  station_->settled_aim();
+  EXPECT_EQ(station_->item("view")->width, after.width);
+}
+
+}  // namespace
+}  // namespace prismesh::test
