@@ -27,6 +27,7 @@ Editor::Editor(const stereo::Profile& profile, const toolkit::ToolOptions& optio
                                          tools_,        options} {
   context_.view.profile = profile;
   context_.view.view.rotation = *stereo::named_rotation("iso");
+  context_.commands = key_bindings();
   for (std::unique_ptr<Tool>& tool : make_tools(context_)) tools_.add(std::move(tool));
 }
 
@@ -110,6 +111,10 @@ void Editor::gesture(const input::Gesture& gesture) {
   ++context_.changes;
   const std::optional<Pixel> picks = input::picks_at(gesture);
   if (picks && toolkit::is_beside(context_.view, *picks)) return cancel_gesture();
+  if (const auto* click = std::get_if<input::NodeClicked>(&gesture); click != nullptr && click->takes_away && !tools_.in_mode()) {
+    const auto node = toolkit::shown_node_at(context_, click->at);
+    if (!node || !context_.shown.snapshot->selected(node->value)) return open_menu(click->at);
+  }
   if (input::asks_for_edit(gesture) && !tools_.allow_edit()) return;
   tools_.gesture(gesture);
 }
@@ -122,7 +127,9 @@ void Editor::cancel_gesture() {
 void Editor::command(const input::Command& command, const Pointer& pointer) {
   ++context_.changes;
   if (input::binding_of(key_bindings(), command).asks_for_edit() && !tools_.allow_edit()) return;
-  if (command.owner == kEditorName)
+  if (command == command_of(EditorCommand::menu_at_pointer))
+    open_menu(pointer);
+  else if (command.owner == kEditorName)
     own_command(command.number);
   else
     tools_.command(command, pointer);
@@ -135,6 +142,7 @@ void Editor::own_command(std::uint8_t number) {
     case EditorCommand::cancel: cancel(false); break;
     case EditorCommand::stop_and_keep: cancel(true); break;
     case EditorCommand::menu: toggle_cover(Cover::menu); break;
+    case EditorCommand::menu_at_pointer: break;  // needs the pointer, see command()
     case EditorCommand::help: toggle_cover(Cover::help); break;
     case EditorCommand::deck_warnings:
       if (context_.shown.snapshot) toggle_cover(Cover::warnings);
@@ -142,6 +150,12 @@ void Editor::own_command(std::uint8_t number) {
     case EditorCommand::fullscreen:
     case EditorCommand::rearm: break;
   }
+}
+
+void Editor::open_menu(const Pointer& pointer) {
+  if (!pointer || !context_.shown.snapshot || dialog_open()) return;
+  point_at(pointer);
+  context_.open.menu_at = *pointer;
 }
 
 void Editor::toggle_cover(Cover cover) { toolkit::set_cover(context_, context_.open.cover == cover ? Cover::none : cover); }
@@ -169,9 +183,9 @@ void Editor::panel_action(const std::function<void()>& action) {
   action();
 }
 
-void Editor::panel_command(const input::Command& command) {
+void Editor::panel_command(const input::Command& command, const Pointer& pointer) {
   if (context_.open.cover == Cover::menu) toolkit::set_cover(context_, Cover::none);
-  this->command(command, std::nullopt);
+  this->command(command, pointer);
 }
 
 bool Editor::reply_by_key(display::Key key) {

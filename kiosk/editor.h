@@ -54,7 +54,7 @@ class Editor {
   /// Carries out what was asked for on a panel.
   void panel_action(const std::function<void()>& action);
   /// A panel asks for a command.
-  void panel_command(const input::Command& command);
+  void panel_command(const input::Command& command, const toolkit::Pointer& pointer = std::nullopt);
 
   bool dialog_open() const { return context_.open.dialog.owner != nullptr || tools_.asking() != nullptr; }
   /// Replies to the question that is asked, if the key does that.
@@ -79,6 +79,7 @@ class Editor {
   void take_newest();
   void own_command(std::uint8_t number);
   void toggle_cover(toolkit::Cover cover);
+  void open_menu(const toolkit::Pointer& pointer);
   void cancel(bool keep);
 
   notices::Notices notices_;

@@ -11,7 +11,18 @@ namespace prismesh::kiosk {
 
 inline constexpr std::string_view kEditorName = "editor";
 
-enum class EditorCommand : std::uint8_t { deck_warnings, undo, redo, cancel, stop_and_keep, rearm, fullscreen, menu, help };
+enum class EditorCommand : std::uint8_t {
+  deck_warnings,
+  undo,
+  redo,
+  cancel,
+  stop_and_keep,
+  rearm,
+  fullscreen,
+  menu,
+  help,
+  menu_at_pointer
+};
 
 constexpr input::Command command_of(EditorCommand command) { return {kEditorName, static_cast<std::uint8_t>(command)}; }
 
@@ -25,6 +36,8 @@ inline constexpr std::array kDocumentKeys = {
 };
 
 inline constexpr std::array kCancelKeys = {
+    input::KeyBinding{display::Key::space, false, false, command_of(EditorCommand::menu_at_pointer), input::Menu::edit, "Space",
+                      "the menu of what is under the pointer"},
     input::KeyBinding{display::Key::escape, false, false, command_of(EditorCommand::cancel), input::Menu::edit, "Esc",
                       "stop what takes long, cancel a drag, close a panel, or clear the selection"},
     input::KeyBinding{display::Key::escape, false, true, command_of(EditorCommand::stop_and_keep), input::Menu::edit, "Shift+Esc",

@@ -20,6 +20,7 @@
 #include "kiosk/tool_list.h"
 #include "kiosk/toolkit/tool_set.h"
 #include "kiosk/tools/files/files_tool.h"
+#include "kiosk/tools/find/find_tool.h"
 
 namespace prismesh::kiosk {
 namespace {
@@ -60,7 +61,7 @@ panels::BarKeys bar_keys() {
     return input::binding_of(key_bindings(), command_of(command));
   };
   return {of_editor(EditorCommand::undo), of_editor(EditorCommand::redo), input::binding_of(key_bindings(), tools::files::save_command()),
-          nullptr, of_editor(EditorCommand::help)};
+          &input::binding_of(key_bindings(), tools::find::find_command()), of_editor(EditorCommand::help)};
 }
 
 void bar(ToolContext& context, PanelLayout& layout) {
@@ -176,6 +177,7 @@ void PanelArrangement::build(ToolContext& context, std::span<const input::MouseB
   build_dock(context, layout);
   panels::status_panel(status_facts(context), layout);
   follow_borders(layout);
+  build_menu(context, layout);
   const bool box = context.tools.asking() != nullptr || context.open.dialog.owner != nullptr;
   if (document && connection.connected())
     for (auto* tool : context.tools.with<toolkit::DrawsOverPicture>()) tool->draw_over_picture(layout);
@@ -219,6 +221,32 @@ void PanelArrangement::build_dock(ToolContext& context, PanelLayout& layout) {
   }
   ImGui::EndChild();
   ImGui::End();
+}
+
+/// What can be done with what is under the pointer, and where the pointer was when it was asked for.
+void PanelArrangement::build_menu(ToolContext& context, PanelLayout& layout) {
+  constexpr const char* kName = "at pointer";
+  if (const auto asked = std::exchange(context.open.menu_at, std::nullopt)) {
+    menu_at_ = asked;
+    ImGui::OpenPopup(kName);
+    ImGui::SetNextWindowPos(ImVec2(static_cast<float>(asked->x()) + 1, static_cast<float>(asked->y()) + 1));
+  }
+  if (!menu_at_) return;
+  if (!ImGui::BeginPopup(kName)) return menu_at_.reset();
+  const bool something = !context.pointed.words.empty();
+  ImGui::TextDisabled("%s", something ? context.pointed.words.c_str() : "nothing is under the pointer");
+  panels::note_item(layout, "menu at pointer", context.pointed.words);
+  std::optional<input::Menu> menu;
+  for (const input::KeyBinding& binding : key_bindings()) {
+    if (!binding.at_pointer()) continue;
+    if (menu != binding.menu) ImGui::Separator();
+    menu = binding.menu;
+    if (ImGui::MenuItem(std::string(binding.meaning).c_str(), std::string(binding.label).c_str(), false, something))
+      layout.actions.emplace_back(
+          [run = layout.run_command_at, command = binding.command, at = *menu_at_] { run(command, at.x(), at.y()); });
+    panels::note_item(layout, "entry " + std::string(binding.meaning), "");
+  }
+  ImGui::EndPopup();
 }
 
 void PanelArrangement::follow_borders(PanelLayout& layout) {

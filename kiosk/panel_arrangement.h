@@ -21,9 +21,11 @@ class PanelArrangement {
  private:
   void build_dock(toolkit::ToolContext& context, panels::PanelLayout& layout);
   void build_box(toolkit::ToolContext& context, panels::PanelLayout& layout);
+  void build_menu(toolkit::ToolContext& context, panels::PanelLayout& layout);
   void follow_borders(panels::PanelLayout& layout);
 
   toolkit::OpenPanels::Dialog shown_dialog_;
+  std::optional<input::Pixel> menu_at_;  ///< of the menu that is open under the pointer
   KeptArrangement kept_;
   std::string tab_ = "Parts";
 };

@@ -23,6 +23,7 @@ Result<void> Screen::lay_out() {
   if (Result<void> type = gui_.set_type(panels::type_for(size_, editor_.profile().stereo())); !type) return type;
   const std::int64_t now = editor_.context().clock.now_ns();
   panels::PanelLayout layout{size_, [this](const input::Command& command) { editor_.panel_command(command); }};
+  layout.run_command_at = [this](const input::Command& command, double x, double y) { editor_.panel_command(command, input::Pixel(x, y)); };
   gui_.layout(size_, static_cast<double>(now - std::exchange(laid_out_ns_, now)) * 1e-9, [&] {
     panels_.build(editor_.context(), mouse_, layout);
     if (pointer_) panels::draw_pointer(pointer_->x(), pointer_->y());

@@ -4,6 +4,7 @@
 #include "kiosk/tools/comparison/comparison_tool.h"
 #include "kiosk/tools/contact/contact_tool.h"
 #include "kiosk/tools/files/files_tool.h"
+#include "kiosk/tools/find/find_tool.h"
 #include "kiosk/tools/mesh_operations/mesh_operations_tool.h"
 #include "kiosk/tools/parts/parts_tool.h"
 #include "kiosk/tools/pen/pen_tool.h"
@@ -31,6 +32,7 @@ const std::vector<ListedTool>& listed_tools() {
       {tools::files::keys(), make<tools::files::FilesTool>},
       {kDocumentKeys},
       {tools::comparison::keys(), make<tools::comparison::ComparisonTool>},
+      {tools::find::keys(), make<tools::find::FindTool>},
       {kCancelKeys},
       {tools::selection::keys(), make<tools::selection::SelectionTool>},
       {tools::shaping::keys(), make<tools::shaping::ShapingTool>},

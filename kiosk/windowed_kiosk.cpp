@@ -185,6 +185,7 @@ std::optional<input::Pixel> WindowedKiosk::pointer_on_picture() const {
 void WindowedKiosk::point() {
   if (!rests_ns_ || moving() || station_.clock.now_ns() < *rests_ns_) return;
   rests_ns_.reset();
+  if (station_.screen.gui().popup_open()) return;  // a menu may be about what was under it
   station_.editor.point_at(pointer_on_picture());
 }
 

@@ -166,7 +166,7 @@ std::vector<Gesture> Gestures::clicked(const display::ButtonChanged& event) {
   last_click_.reset();
   switch (layout_.click(event.button, modifiers_)) {
     case ClickDoes::take_back: return {TakeBackClicked{}};
-    case ClickDoes::unpick: return {NodeClicked{down_, SelectMode::subtract}};
+    case ClickDoes::unpick: return {NodeClicked{down_, SelectMode::subtract, true}};
     case ClickDoes::region: return {RegionClicked{down_, mode()}};
     case ClickDoes::pick:
       last_click_ = down_;

@@ -23,6 +23,7 @@ enum class Under : std::uint8_t { picture, panel, lift_handle, slide_handle, mov
 struct NodeClicked {
   Pixel at = Pixel::Zero();
   mesh::document::SelectMode mode = mesh::document::SelectMode::set;
+  bool takes_away = false;  ///< by the button that takes away: where nothing can be taken, it opens the menu
 };
 struct RegionClicked {
   Pixel at = Pixel::Zero();  ///< of the first of the two clicks

@@ -28,8 +28,8 @@ constexpr std::array<std::string_view, 6> kDragMeanings{"select what an outline 
 constexpr std::array<std::string_view, 5> kClicks{"nothing", "pick", "unpick", "take-back", "region"};
 constexpr std::array<std::string_view, 5> kClickMeanings{
     "nothing", "select the nearest visible node; in the empty ground: clear the selection",
-    "remove the nearest visible node from the selection", "take back the last selection step",
-    "select the region around the node: up to creases, its part, its piece or its free edge"};
+    "remove the nearest visible node from the selection; where it is not selected: the menu of what is under the pointer",
+    "take back the last selection step", "select the region around the node: up to creases, its part, its piece or its free edge"};
 constexpr std::array<std::string_view, 2> kWheels{"zoom", "angle"};
 constexpr std::array<std::string_view, 2> kWheelMeanings{"zoom to the pointer", "widen or narrow the angle that bounds regions"};
 

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 #include <imgui.h>
+#include <imgui_internal.h>
 
 #include "kiosk/panels/layout.h"
 #include "kiosk/panels/text.h"
@@ -49,7 +50,9 @@ void deck_and_state(const BarFacts& facts, const BarKeys& keys, const Place& roo
   const float name_width = room.width - state_width - kGrid;
   const float top = std::floor((room.height - ImGui::GetFrameHeight()) / 2);
   if (facts.deck.empty() || name_width < 3 * ImGui::GetFontSize()) return;
-  ImGui::SetCursorPos(ImVec2(room.x, top));
+  // A bar lays text out on the base line of what stood before it.
+  const float base = ImGui::GetCurrentWindow()->DC.CurrLineTextBaseOffset;
+  ImGui::SetCursorPos(ImVec2(room.x, std::floor((room.height - ImGui::GetTextLineHeight()) / 2) - base));
   elided_text(printable(facts.deck), name_width);
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", printable(facts.path).c_str());
   note_item(layout, "deck", printable(facts.deck));

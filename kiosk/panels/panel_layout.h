@@ -30,6 +30,8 @@ struct PanelLayout {
   double bottom = 0;  ///< pixels: what lies over the picture ends above it
   Places places{};
   std::vector<ScreenItem> items{};
+  /// Carries out a command at a pixel of the picture; called after the layout.
+  std::function<void(const input::Command&, double x, double y)> run_command_at{};
 
   /// What panels leave of the picture: what lies over the model keeps within it.
   Place view() const { return places.view.empty() ? whole(picture) : places.view; }

@@ -20,7 +20,7 @@ constexpr double kAxisRadius = 1.4, kAxisBeyond = 28, kAxisEnd = 5;
 constexpr double kCircleRadius = 1.1, kArcRadius = 2.4, kTickRadius = 1.1, kSpokeRadius = 0.8;
 constexpr double kTick = 11, kLongTick = 18;
 constexpr double kFollowedRadius = 2.2;
-constexpr double kPenRadius = 4, kPenCollar = 6, kPenNodeRadius = 5;
+constexpr double kPenRadius = 4, kPenCollar = 6, kPenNodeRadius = 5, kMarkSize = 1.5;
 constexpr double kPenConeEnd = 0.17, kPenGripEnd = 0.5;  ///< share of the pen's length
 constexpr float kDiskAlpha = 0.42F, kActiveDiskAlpha = 0.6F, kFaintAlpha = 0.9F;
 constexpr int kSides = 10, kRound = 48;
@@ -284,6 +284,17 @@ std::vector<HandlePiece> pen_pieces(const Pen& pen, const HandleSpace& space) {
   add_ball(shaft.triangles, tip + about.axis, radius);
   pieces.push_back(std::move(cone));
   pieces.push_back(std::move(shaft));
+  return pieces;
+}
+
+std::vector<HandlePiece> mark_pieces(const Vec3& point, const HandleSpace& space) {
+  if (!finite(point)) return {};
+  const ScreenSpace screen(space);
+  const Vec3 at = screen.point(point);
+  const double pixel = screen.pixel(at);
+  std::vector<HandlePiece> pieces{{{}, true, false, 1}};
+  add_ball(pieces.back().triangles, at, kPenNodeRadius * pixel);
+  add_ring(pieces.back().triangles, at, kMarkSize * pixel);
   return pieces;
 }
 

@@ -37,6 +37,9 @@ std::vector<HandlePiece> handle_pieces(const Handle& handle, const HandleSpace& 
 std::vector<HandlePiece> pen_pieces(const Pen& pen, const HandleSpace& space);
 inline constexpr double kPenLengthPixels = 170;  ///< if it is parallel to the screen
 
+/// A ball at a point, and a ring about it in the screen's plane, of the active colour. Empty if the point isn't finite.
+std::vector<HandlePiece> mark_pieces(const Vec3& point, const HandleSpace& space);
+
 /// Tubes along edges, of the active colour. Edges that aren't finite are left out.
 HandlePiece followed_edges_piece(const std::vector<std::array<Vec3, 2>>& edges, const HandleSpace& space);
 

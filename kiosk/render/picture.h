@@ -117,6 +117,7 @@ struct Picture {
   bool quality_glyphs = true;
   bool damaged_only = false;               ///< glyphs and part states only of what the document's edits made worse
   std::optional<mesh::ShellIndex> marked;  ///< the shell that the view went to: a frame is drawn around it
+  std::optional<Vec3> marked_point;        ///< the node that the view went to, deck coordinates: a ball with a ring
   bool selected_nodes = true;
   bool moving = false;  ///< the view turns or something is dragged: drawn without multisampling, which is faster for large models
   std::optional<Handle> handle;

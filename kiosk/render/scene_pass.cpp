@@ -92,6 +92,7 @@ void ScenePass::draw(const Picture& picture, const ViewContent& content, const E
   }
   const HandleSpace space{picture.view, eye.mm_per_pixel, eye.viewer_mm, model.shown_box()};
   if (!picture.followed_edges.empty()) handle_.draw({followed_edges_piece(picture.followed_edges, space)}, eye);
+  if (picture.marked_point) handle_.draw(mark_pieces(*picture.marked_point, space), eye);
   if (picture.handle) handle_.draw(handle_pieces(*picture.handle, space), eye);
   if (picture.pen) handle_.draw(pen_pieces(*picture.pen, space), eye);
   glDisable(GL_DEPTH_TEST);

@@ -118,6 +118,17 @@ PointedAt pointed_at(const ToolContext& context, const std::optional<Pixel>& pix
   return found;
 }
 
+std::optional<mesh::NodeIndex> node_with_id(const ToolContext& context, std::int64_t id) {
+  const auto& shown = context.shown.snapshot;
+  if (!shown) return std::nullopt;
+  for (std::size_t c = 0; c < shown->chunk_count(ipc::SnapshotArray::node_ids); ++c) {
+    const auto ids = shown->chunk<std::int64_t>(ipc::SnapshotArray::node_ids, c);
+    const auto found = std::ranges::find(ids, id);
+    if (found != ids.end()) return mesh::NodeIndex(c * mesh::kChunkSize + static_cast<std::size_t>(found - ids.begin()));
+  }
+  return std::nullopt;
+}
+
 std::optional<mesh::ShellIndex> shell_with_id(const ToolContext& context, std::int64_t id) {
   const auto& shown = context.shown.snapshot;
   if (!shown) return std::nullopt;

@@ -41,6 +41,8 @@ std::optional<mesh::ShellIndex> shell_at(const ToolContext& context, const std::
 /// What is under the pointer, in words too.
 PointedAt pointed_at(const ToolContext& context, const std::optional<input::Pixel>& pixel);
 
+/// The node with an id, also one that an edit removed; nothing if the shown snapshot hasn't got it. Costs a pass over the ids.
+std::optional<mesh::NodeIndex> node_with_id(const ToolContext& context, std::int64_t id);
 /// The shell with an id; nothing if the shown snapshot hasn't got it. Costs a pass over the ids.
 std::optional<mesh::ShellIndex> shell_with_id(const ToolContext& context, std::int64_t id);
 

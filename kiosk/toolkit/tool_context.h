@@ -5,9 +5,12 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "base/clock.h"
+#include "kiosk/input/command.h"
+#include "kiosk/input/gestures.h"
 #include "kiosk/link/model_link.h"
 #include "kiosk/link/pen_link.h"
 #include "kiosk/notices/notices.h"
@@ -57,12 +60,14 @@ struct OpenPanels {
   Tool* in_hand = nullptr;  ///< whose panel and options are shown; null: those of `usual`
   Tool* usual = nullptr;    ///< the tool that selects
   Dialog dialog;
+  std::optional<input::Pixel> menu_at{};  ///< where the menu of what is under the pointer was asked for
   Cover cover = Cover::none;
 };
 
 struct ToolOptions {
-  std::filesystem::path expressions{};  ///< file of the entered expressions; empty: none
-  bool follows_others = false;          ///< moves together with other kiosks that do
+  std::filesystem::path expressions{};    ///< file of the entered expressions; empty: none
+  std::filesystem::path commands_used{};  ///< file of the commands that were found; empty: none
+  bool follows_others = false;            ///< moves together with other kiosks that do
 };
 
 struct ToolContext {
@@ -74,6 +79,7 @@ struct ToolContext {
   notices::Notices& notices;
   ToolSet& tools;
   ToolOptions options{};
+  std::span<const input::KeyBinding> commands{};  ///< of all tools and the editor
 
   PictureView view{};
   ShownModel shown{};

@@ -73,6 +73,7 @@ const std::vector<Module>& modules() {
       {"kiosk/link", {"kiosk/notices", "ipc/model", "ipc/pen"}},
       {"kiosk/toolkit", {"kiosk/link", "kiosk/panels", "kiosk/render"}},
       {"kiosk/tools/files", {"kiosk/toolkit"}},
+      {"kiosk/tools/find", {"kiosk/toolkit"}},
       {"kiosk/tools/comparison", {"kiosk/toolkit"}},
       {"kiosk/tools/contact", {"kiosk/toolkit"}},
       {"kiosk/tools/selection", {"kiosk/toolkit"}},
@@ -84,9 +85,9 @@ const std::vector<Module>& modules() {
       {"kiosk/tools/view", {"kiosk/toolkit"}},
       {"kiosk/calibration", {"kiosk/display", "kiosk/render"}},
       {"kiosk",
-       {"kiosk/tools/files", "kiosk/tools/comparison", "kiosk/tools/contact", "kiosk/tools/selection", "kiosk/tools/shaping",
-        "kiosk/tools/pen", "kiosk/tools/quality", "kiosk/tools/mesh_operations", "kiosk/tools/parts", "kiosk/tools/view",
-        "kiosk/calibration", "kiosk/display/kms", "kiosk/display/x11", "drivers/settings"}},
+       {"kiosk/tools/files", "kiosk/tools/find", "kiosk/tools/comparison", "kiosk/tools/contact", "kiosk/tools/selection",
+        "kiosk/tools/shaping", "kiosk/tools/pen", "kiosk/tools/quality", "kiosk/tools/mesh_operations", "kiosk/tools/parts",
+        "kiosk/tools/view", "kiosk/calibration", "kiosk/display/kms", "kiosk/display/x11", "drivers/settings"}},
 
       {"cli", {"ipc/device", "ipc/model", "ipc/pen", "drivers/settings"}},
   };

@@ -71,7 +71,7 @@ TEST(KeysTest, every_command_has_one_row_with_words) {
 TEST(KeysTest, the_commands_of_an_owner_are_numbered_without_gaps) {
   std::map<std::string_view, std::set<int>> numbers;
   for (const KeyBinding& binding : key_bindings()) numbers[binding.command.owner].insert(binding.command.number);
-  EXPECT_EQ(numbers.size(), 11U) << "ten tools and the editor";
+  EXPECT_EQ(numbers.size(), 12U) << "eleven tools and the editor";
   for (const auto& [owner, taken] : numbers)
     EXPECT_EQ(*taken.rbegin() + 1, static_cast<int>(taken.size())) << owner << ": a row is missing";
 }
@@ -90,6 +90,8 @@ TEST(KeysTest, rows_keep_the_order_of_help_and_menu) {
                                              "C",
                                              "Shift+C",
                                              "Ctrl+C",
+                                             "Ctrl+P",
+                                             "Space",
                                              "Esc",
                                              "Shift+Esc",
                                              "F2",
@@ -161,6 +163,7 @@ TEST(KeysTest, rows_keep_the_order_of_help_and_menu) {
                                              "Shift+O",
                                              "Shift+K",
                                              "F",
+                                             "Ctrl+F",
                                              "1",
                                              "2",
                                              "3",

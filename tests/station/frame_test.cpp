@@ -153,5 +153,92 @@ TEST_F(FrameTest, a_dragged_border_moves_the_model_along_and_is_kept) {
   EXPECT_EQ(station_->item("view")->width, after.width);
 }
 
+TEST_F(FrameTest, a_command_is_found_by_its_words_and_carried_out) {
+  station_->start_kiosk();
+  station_->key("ctrl+p");
+  station_->type("single creases pie");
+  station_->key("Return");
+  station_->settled_aim();
+  station_->key("Escape");
+  station_->kiosk().skip_lines();
+  station_->key("ctrl+p");
+  station_->type("quality figures");
+  ASSERT_FALSE(station_->kiosk()
+                   .wait_until([](const std::string& line) {
+                     return line.starts_with("item \"found Mesh: show or hide quality") && line.ends_with("chosen");
+                   })
+                   .empty());
+  station_->key("Return");
+  EXPECT_FALSE(station_->kiosk().wait_for("panel quality").empty());
+  station_->key("ctrl+p");
+  EXPECT_FALSE(station_->kiosk()
+                   .wait_until([](const std::string& line) {
+                     return line.starts_with("item \"found Mesh: show or hide quality") && line.ends_with("chosen");
+                   })
+                   .empty())
+      << "what was used last comes first";
+  station_->show_people("find");
+}
+
+TEST_F(FrameTest, an_id_is_flown_to_and_marked) {
+  station_->start_kiosk();
+  const std::int64_t id = nodes_.begin()->first;
+  for (const std::string& typed : {std::to_string(id), "node " + std::to_string(id)}) {
+    station_->kiosk().skip_lines();
+    station_->key("ctrl+p");
+    station_->type(typed);
+    ASSERT_FALSE(station_->kiosk().wait_for("item \"found node " + std::to_string(id)).empty());
+    station_->key("Return");
+    ASSERT_FALSE(station_->kiosk().wait_for("gone to node " + std::to_string(id)).empty());
+  }
+  const auto at = station_->settled_aim().pixel_of(nodes_.at(id));
+  const auto middle = station_->item("view")->middle();
+  EXPECT_NEAR(at[0], middle[0], 2);
+  EXPECT_NEAR(at[1], middle[1], 2);
+  station_->show_people("gone_to");
+  const std::string generation = station_->kiosk().last("generation ");
+  station_->key("Escape");
+  station_->settled_aim();
+  EXPECT_EQ(station_->kiosk().last("generation "), generation) << "Esc takes the mark away first";
+  station_->kiosk().skip_lines();
+  station_->key("ctrl+p");
+  station_->type("node 999999999");
+  EXPECT_FALSE(station_->kiosk().wait_for("item \"find field\"").empty());
+  station_->key("Return");
+  station_->settled_aim();
+  EXPECT_TRUE(station_->item("find field")) << "nothing was taken";
+}
+
+TEST_F(FrameTest, the_menu_under_the_pointer_acts_there) {
+  station_->start_kiosk();
+  const std::int64_t id = std::next(nodes_.begin(), static_cast<long>(nodes_.size() / 2))->first;
+  const auto [x, y] = station_->settled_aim().pixel_of(nodes_.at(id));
+  for (const bool by_key : {true, false}) {
+    station_->kiosk().skip_lines();
+    station_->move(x, y);
+    if (by_key)
+      station_->key("space");
+    else
+      station_->click(x, y, 3);
+    expect_state("menu at pointer", "node " + std::to_string(id) + " ");
+    station_->settled_aim();
+    station_->show_people("menu_at_pointer");
+    station_->kiosk().skip_lines();
+    station_->click_item("entry select the region under the pointer");
+    EXPECT_FALSE(station_->kiosk()
+                     .wait_until([](const std::string& line) {
+                       return line.starts_with("generation ") && line.find("selected 0") == std::string::npos;
+                     })
+                     .empty())
+        << "the region of the node that the pointer was on";
+    station_->settled_aim();
+    if (by_key) {
+      for (int of_the_warning_and_of_the_selection = 0; of_the_warning_and_of_the_selection < 2; ++of_the_warning_and_of_the_selection)
+        station_->key("Escape");
+      ASSERT_TRUE(station_->wait_for_selection(0));
+    }
+  }
+}
+
 }  // namespace
 }  // namespace prismesh::test

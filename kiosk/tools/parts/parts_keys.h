@@ -17,23 +17,23 @@ constexpr input::Command command_of(PartsCommand command) { return {kName, stati
 
 inline constexpr std::array kKeys = {
     input::KeyBinding{display::letter('H'), false, false, command_of(PartsCommand::hide), input::Menu::parts, "H",
-                      "hide the part under the pointer, else the selection's parts", input::kAsksForEdit},
+                      "hide the part under the pointer, else the selection's parts", input::kAsksForEdit | input::kAtPointer},
     input::KeyBinding{display::letter('O'), false, false, command_of(PartsCommand::only), input::Menu::parts, "O",
-                      "show only that part or those parts", input::kAsksForEdit},
+                      "show only that part or those parts", input::kAsksForEdit | input::kAtPointer},
     input::KeyBinding{display::letter('S'), false, false, command_of(PartsCommand::show_all), input::Menu::parts, "S", "show all parts",
                       input::kAsksForEdit},
     input::KeyBinding{display::letter('U'), false, false, command_of(PartsCommand::reverse), input::Menu::parts, "U",
                       "show what is hidden and hide the rest", input::kAsksForEdit},
     input::KeyBinding{display::letter('K'), false, false, command_of(PartsCommand::lock), input::Menu::parts, "K",
-                      "lock that part or those parts: their nodes don't move", input::kAsksForEdit},
+                      "lock that part or those parts: their nodes don't move", input::kAsksForEdit | input::kAtPointer},
     input::KeyBinding{display::letter('U'), false, true, command_of(PartsCommand::unlock), input::Menu::parts, "Shift+U",
-                      "unlock that part or those parts", input::kAsksForEdit},
+                      "unlock that part or those parts", input::kAsksForEdit | input::kAtPointer},
     input::KeyBinding{display::letter('H'), false, true, command_of(PartsCommand::hide_file), input::Menu::parts, "Shift+H",
-                      "hide all parts of the include file of the part under the pointer", input::kAsksForEdit},
+                      "hide all parts of the include file of the part under the pointer", input::kAsksForEdit | input::kAtPointer},
     input::KeyBinding{display::letter('O'), false, true, command_of(PartsCommand::only_file), input::Menu::parts, "Shift+O",
-                      "show only the parts of that file", input::kAsksForEdit},
+                      "show only the parts of that file", input::kAsksForEdit | input::kAtPointer},
     input::KeyBinding{display::letter('K'), false, true, command_of(PartsCommand::lock_file), input::Menu::parts, "Shift+K",
-                      "lock or unlock the parts of that file", input::kAsksForEdit},
+                      "lock or unlock the parts of that file", input::kAsksForEdit | input::kAtPointer},
 };
 
 }  // namespace prismesh::kiosk::tools::parts

@@ -21,7 +21,7 @@ inline constexpr std::array kKeys = {
     input::KeyBinding{display::letter('L'), true, true, command_of(QualityCommand::relax_part), input::Menu::mesh, "Ctrl+Shift+L",
                       "relax the selection's parts", input::kAsksForEdit},
     input::KeyBinding{display::letter('L'), false, true, command_of(QualityCommand::relax_from), input::Menu::mesh, "Shift+L",
-                      "relax outwards from the node under the pointer", input::kAsksForEdit},
+                      "relax outwards from the node under the pointer", input::kAsksForEdit | input::kAtPointer},
     input::KeyBinding{display::letter('J'), true, false, command_of(QualityCommand::relax_failed), input::Menu::mesh, "Ctrl+J",
                       "relax what fails", input::kAsksForEdit},
     input::KeyBinding{display::letter('E'), true, false, command_of(QualityCommand::repair_damaged), input::Menu::mesh, "Ctrl+E",

@@ -23,7 +23,7 @@ inline constexpr std::array kKeys = {
     input::KeyBinding{display::letter('I'), false, false, command_of(SelectionCommand::invert), input::Menu::select, "I",
                       "invert the selection", input::kAsksForEdit},
     input::KeyBinding{display::letter('R'), false, false, command_of(SelectionCommand::region), input::Menu::select, "R",
-                      "select the region under the pointer", input::kAsksForEdit},
+                      "select the region under the pointer", input::kAsksForEdit | input::kAtPointer},
     input::KeyBinding{display::letter('R'), false, true, command_of(SelectionCommand::region_by), input::Menu::select, "Shift+R",
                       "what bounds regions: creases, the part, the piece, a free edge"},
     input::KeyBinding{display::Key::page_up, false, true, command_of(SelectionCommand::wider_angle), input::Menu::select, "Shift+PgUp",

@@ -29,13 +29,16 @@ enum class ViewCommand : std::uint8_t {
   less_depth,
   wider_comfort,
   narrower_comfort,
+  fit_model,
 };
 
 constexpr input::Command command_of(ViewCommand command) { return {kName, static_cast<std::uint8_t>(command)}; }
 
 inline constexpr std::array kKeys = {
     input::KeyBinding{display::letter('F'), false, false, command_of(ViewCommand::fit), input::Menu::view, "F",
-                      "fit the visible model into the picture"},
+                      "fit the selection into the view, else the visible model"},
+    input::KeyBinding{display::letter('F'), true, false, command_of(ViewCommand::fit_model), input::Menu::view, "Ctrl+F",
+                      "fit the visible model into the view"},
     input::KeyBinding{input::digit_key(1), false, false, command_of(ViewCommand::front), input::Menu::view, "1", "view from the front"},
     input::KeyBinding{input::digit_key(2), false, false, command_of(ViewCommand::back), input::Menu::view, "2", "view from behind"},
     input::KeyBinding{input::digit_key(3), false, false, command_of(ViewCommand::left), input::Menu::view, "3", "view from the left"},

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "kiosk/toolkit/edits.h"
+#include "kiosk/toolkit/model_boxes.h"
 #include "kiosk/toolkit/picking.h"
 #include "kiosk/toolkit/tool_set.h"
 #include "kiosk/tools/view/view_keys.h"
@@ -37,6 +38,7 @@ void ViewTool::command(std::uint8_t number, const toolkit::Pointer&) {
   DepthFit& depth = context_.view.depth;
   switch (static_cast<ViewCommand>(number)) {
     case ViewCommand::fit: fit(); break;
+    case ViewCommand::fit_model: fit_model(); break;
     case ViewCommand::front: look_from("front"); break;
     case ViewCommand::back: look_from("back"); break;
     case ViewCommand::left: look_from("left"); break;
@@ -109,16 +111,25 @@ void ViewTool::zoom(const Zoomed& zoom) {
 
 void ViewTool::look_from(std::string_view side) {
   if (const auto rotation = stereo::named_rotation(side)) context_.view.view.rotation = *rotation;
-  fit();
+  fit_model();
 }
 
 void ViewTool::fit() {
+  const stereo::Box selection = context_.shown.older ? stereo::Box() : toolkit::turned_box_of_selection(context_);
+  if (selection.empty()) return fit_model();
+  PictureView& view = context_.view;
+  set_view(stereo::fit_turned(view.view, selection, toolkit::room_of_view_mm(view), view.seen.between_eyes_mm.z()));
+}
+
+void ViewTool::fit_model() {
   if (context_.renderer.bounds().empty()) return;
   PictureView& view = context_.view;
-  Eigen::Vector2d room = toolkit::room_mm(view);
-  if (view.two_views) room.x() *= 0.5;
-  view.view = context_.renderer.fitted(view.view, room, view.seen.between_eyes_mm.z());
-  if (view.depth.keeps_selection()) toolkit::bring_selection(context_);
+  set_view(context_.renderer.fitted(view.view, toolkit::room_of_view_mm(view), view.seen.between_eyes_mm.z()));
+}
+
+void ViewTool::set_view(const stereo::View& view) {
+  context_.view.view = view;
+  if (context_.view.depth.keeps_selection()) toolkit::bring_selection(context_);
   context_.tools.view_moved();
   ++context_.changes;
 }

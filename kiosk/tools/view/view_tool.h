@@ -29,7 +29,7 @@ class ViewTool final : public toolkit::Tool,
   void command(std::uint8_t number, const toolkit::Pointer& pointer) override;
   bool gesture(const input::Gesture& gesture) override;
   Result<void> prepare() override;
-  void document_changed() override { fit(); }
+  void document_changed() override { fit_model(); }
   void look(std::int64_t now_ns) override;
   const char* tab() const override { return "Display"; }
   void draw_tab(panels::PanelLayout& layout) override;
@@ -41,6 +41,8 @@ class ViewTool final : public toolkit::Tool,
   void zoom(const input::Zoomed& zoom);
   void look_from(std::string_view side);
   void fit();
+  void fit_model();
+  void set_view(const stereo::View& view);
   void next_colours();
   void next_profile();
   void take_profile(const std::string& name);
