@@ -96,14 +96,6 @@ bool has_any(const ShellSet& shells, const ShellSet& of) {
   return std::any_of(shells.begin(), shells.end(), [&](ShellIndex shell) { return std::binary_search(of.begin(), of.end(), shell); });
 }
 
-template <class T>
-bool same_chunks(const ChunkedArray<T>& a, const ChunkedArray<T>& b) {
-  if (a.size() != b.size()) return false;
-  for (std::size_t c = 0; c < a.chunk_count(); ++c)
-    if (!a.shares_chunk(b, c)) return false;
-  return true;
-}
-
 /// Tells the listener shares of the whole, and remembers whether it stopped the work.
 class Share {
  public:
