@@ -13,6 +13,7 @@
 #include "mesh/document/clusters.h"
 #include "mesh/document/contact_rule.h"
 #include "mesh/document/held_apart.h"
+#include "mesh/document/history.h"
 #include "mesh/document/restructure.h"
 #include "mesh/document/scope.h"
 #include "mesh/document/unwritable.h"
@@ -209,15 +210,6 @@ Result<Pass> repair_writable(const PassInput& input, RepairProgress& progress) {
     if (!found) return fail(progress.keeps() ? stopped_too_early(done.error()) : found.error());
     if (*found == 0) return fail(done.error());
   }
-}
-
-/// The document with a further generation as its current one.
-Document with_current(const Document& document, std::shared_ptr<const Generation> generation) {
-  Document further = document;
-  further.generations.resize(document.cursor + 1);
-  further.generations.push_back(std::move(generation));
-  further.cursor = further.generations.size() - 1;
-  return further;
 }
 
 /// Keeps those pairs that are still edges between two triangles.

@@ -192,7 +192,7 @@ struct Restructure {
 
 /// Which contacts are separated.
 enum class ContactKind : std::uint8_t { perforation, penetration };
-/// What follows a separation. Only `none` is there yet.
+/// What follows a separation, about what it moved: relaxing or repairing that keeps apart (ContactRule).
 enum class FollowUp : std::uint8_t { none, relax, repair };
 /// Moves shells that cross or are too close apart (docs/contact.md). Lengths are in the deck's unit.
 struct Separate {
