@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/readable_number.h"
+#include "mesh/contact/changed_shells.h"
 #include "mesh/contact/contacts_about.h"
 #include "mesh/contact/find_penetrations.h"
 #include "mesh/contact/meant_region.h"
@@ -57,22 +58,6 @@ PlacedContacts contacts_in(const ContactState& state, double reach, const ShellS
     add_close(find_penetrations(state.model, state.tree, state.thickness, {}, {0, nullptr, &among}), contacts);
   std::erase_if(contacts, [&](const auto& entry) { return !has_shell_of(whole, entry.first); });
   return contacts;
-}
-
-/// The shells whose corners differ, or that only one of the models has.
-ShellSet changed_shells(const Model& before, const Model& after) {
-  const NodeSet moved = moved_nodes(before, after);
-  ShellSet changed = shells_touching(before, moved);
-  const ShellSet touched = shells_touching(after, moved);
-  changed.insert(changed.end(), touched.begin(), touched.end());
-  const auto &was = before.shell_nodes, &is = after.shell_nodes;
-  for (std::size_t c = 0; c < std::max(was.chunk_count(), is.chunk_count()); ++c) {
-    if (c < was.chunk_count() && c < is.chunk_count() && was.chunk_owner(c) == is.chunk_owner(c)) continue;
-    for (std::size_t s = c * kChunkSize; s < std::min((c + 1) * kChunkSize, std::max(was.size(), is.size())); ++s)
-      if (s >= was.size() || s >= is.size() || !(was[s] == is[s])) changed.emplace_back(s);
-  }
-  sort_unique(changed);
-  return changed;
 }
 
 /// Two states, and what changed from one to the other.
