@@ -90,14 +90,6 @@ ShellSet near_any(const spatial::BoxTree& tree, const ShellSet& shells, double r
   return all;
 }
 
-template <class Pair>
-void sort_pairs(std::vector<Pair>& pairs) {
-  const auto less = [](const Pair& x, const Pair& y) { return std::tie(x.a, x.b) < std::tie(y.a, y.b); };
-  const auto equal = [](const Pair& x, const Pair& y) { return x.a == y.a && x.b == y.b; };
-  std::sort(pairs.begin(), pairs.end(), less);
-  pairs.erase(std::unique(pairs.begin(), pairs.end(), equal), pairs.end());
-}
-
 double max_of(const ContactThickness& thickness) {
   return thickness.of_shell.empty() ? 0 : std::max(0.0, *std::max_element(thickness.of_shell.begin(), thickness.of_shell.end()));
 }
@@ -139,10 +131,12 @@ class KeptContacts::Update {
     return changed_.size() <= after_.model.shell_count() / kMaxChangedShare;
   }
 
-  /// `kept`: what was found before.
-  Regions run(Regions kept) {
+  /// Brings the pairs up to date. `kept`: what was found before.
+  Regions run(Pairs& pairs, Regions kept) {
     if (changed_.empty()) return kept;
-    find_pairs(first_front());
+    const ShellSet shells = shells_to_measure();
+    measure(shells, pairs);
+    take_connected(pairs, with_neighbours(shells));
     Regions next;
     add_perforations(group_crossings(after_.model, crossings_), next);
     next.penetrations = group_close_shells(after_.model, *after_.thickness, std::move(close_), crossings_, after_.gap, nullptr);
@@ -156,18 +150,43 @@ class KeptContacts::Update {
   }
 
  private:
-  /// The shells of all pairs that may have become, or be no more, and those at their nodes, with which others may be connected.
-  ShellSet first_front() {
+  /// The shells of all pairs that may have become, changed, or be no more.
+  ShellSet shells_to_measure() {
     const double path = kMinPathInLeastDistances * std::max(before_.reach, after_.reach);
     ShellSet near = changed_;
     for (const State* state : {&before_, &after_}) {
       const ShellSet found = near_any(state->tree, changed_, path);
       near.insert(near.end(), found.begin(), found.end());
     }
-    ShellSet front = is_whole_.add_all(near);
-    const std::size_t pairs_of = front.size();
+    ShellSet shells = is_whole_.add_all(near);
+    std::sort(shells.begin(), shells.end());
+    return shells;
+  }
+
+  /// Brings the pairs of these shells up to date. All others are as before.
+  void measure(const ShellSet& shells, Pairs& pairs) const {
+    for (const ShellIndex shell : shells) {
+      pairs.crossings.remove_of(shell);
+      pairs.close.remove_of(shell);
+    }
+    ShellSet among;
+    std::copy_if(shells.begin(), shells.end(), std::back_inserter(among), [&](ShellIndex shell) { return after_.tree.contains(shell); });
+    const ShellSet near = near_any(after_.tree, among, after_.reach);
+    among.insert(among.end(), near.begin(), near.end());
+    sort_unique(among);
+    const auto put = [&]<class Pair>(std::vector<Pair> found, PairPool<Pair>& pool) {
+      for (Pair& pair : found)
+        if (is_whole_.has(pair.a) || is_whole_.has(pair.b)) pool.add(std::move(pair));
+    };
+    put(find_shell_crossings(after_.model, after_.tree, &among), pairs.crossings);
+    put(find_close_shells(after_.model, after_.tree, *after_.thickness, after_.gap, &among), pairs.close);
+  }
+
+  /// The shells at the nodes of those that were measured, too: with these other pairs were connected.
+  ShellSet with_neighbours(const ShellSet& shells) {
+    ShellSet front = shells;
     for (const State* state : {&before_, &after_})
-      for (std::size_t i = 0; i < pairs_of; ++i) add_at_nodes(*state, front[i], front);
+      for (const ShellIndex shell : shells) add_at_nodes(*state, shell, front);
     return front;
   }
 
@@ -178,34 +197,28 @@ class KeptContacts::Update {
         if (is_whole_.add(neighbour)) front.push_back(neighbour);
   }
 
-  /// All pairs of the front, and of what is connected with it.
-  void find_pairs(ShellSet front) {
-    const Model& model = after_.model;
-    while (!front.empty()) {
-      std::erase_if(front, [&](ShellIndex shell) { return !after_.tree.contains(shell); });
-      std::sort(front.begin(), front.end());
-      ShellSet among = near_any(after_.tree, front, after_.reach);
-      among.insert(among.end(), front.begin(), front.end());
-      sort_unique(among);
-      Marks of_front(model.shell_count());
-      of_front.add_all(front);
-      ShellSet next;
-      const auto take = [&]<class Pair>(std::vector<Pair> found, std::vector<Pair>& all) {
-        for (Pair& pair : found) {
-          if (!of_front.has(pair.a) && !of_front.has(pair.b)) continue;
-          for (const ShellIndex shell : {pair.a, pair.b}) {
-            if (is_whole_.add(shell)) next.push_back(shell);
-            add_at_nodes(after_, shell, next);
-          }
-          all.push_back(std::move(pair));
+  /// Takes all pairs of the front, and of what is connected with it.
+  void take_connected(const Pairs& pairs, ShellSet front) {
+    const auto take = [&]<class Pair>(const PairPool<Pair>& pool, ShellIndex of, std::vector<bool>& taken, std::vector<Pair>& all) {
+      pool.each_of(of, [&](std::uint32_t number, const Pair& pair) {
+        if (taken[number]) return;
+        taken[number] = true;
+        for (const ShellIndex shell : {pair.a, pair.b}) {
+          if (is_whole_.add(shell)) front.push_back(shell);
+          add_at_nodes(after_, shell, front);
         }
-      };
-      take(find_shell_crossings(model, after_.tree, &among), crossings_);
-      take(find_close_shells(model, after_.tree, *after_.thickness, after_.gap, &among), close_);
-      front = std::move(next);
+        all.push_back(pair);
+      });
+    };
+    std::vector<bool> crossings_taken(pairs.crossings.numbers()), close_taken(pairs.close.numbers());
+    for (std::size_t i = 0; i < front.size(); ++i) {
+      const ShellIndex shell = front[i];
+      take(pairs.crossings, shell, crossings_taken, crossings_);
+      take(pairs.close, shell, close_taken, close_);
     }
-    sort_pairs(crossings_);
-    sort_pairs(close_);
+    const auto less = [](const auto& x, const auto& y) { return std::tie(x.a, x.b) < std::tie(y.a, y.b); };
+    std::sort(crossings_.begin(), crossings_.end(), less);
+    std::sort(close_.begin(), close_.end(), less);
   }
 
   template <class Region>
@@ -287,7 +300,7 @@ bool KeptContacts::search(const StateToSearch& state, const Progress& progress) 
   if (before) update.emplace(*before, next);
   if (update && update->is_small()) {
     at_.reset();  // where there is no memory on the way, the next search begins anew
-    found = update->run(std::move(found_));
+    found = update->run(pairs_, std::move(found_));
   } else {
     bool stopped = false;
     const auto from_to = [&](double from, double to) -> Progress {
@@ -298,8 +311,14 @@ bool KeptContacts::search(const StateToSearch& state, const Progress& progress) 
     };
     const std::vector<ShellCrossing> crossings = find_shell_crossings(next.model, next.tree, nullptr, from_to(0, kCrossingsShare));
     if (stopped) return false;
-    found.penetrations = find_penetrations(next.model, next.tree, *next.thickness, crossings, {next.gap}, from_to(kCrossingsShare, 1));
+    std::vector<CloseShells> close =
+        find_close_shells(next.model, next.tree, *next.thickness, next.gap, nullptr, from_to(kCrossingsShare, 1));
     if (stopped) return false;
+    at_.reset();
+    pairs_ = {};
+    for (const ShellCrossing& crossing : crossings) pairs_.crossings.add(crossing);
+    for (const CloseShells& pair : close) pairs_.close.add(pair);
+    found.penetrations = group_close_shells(next.model, *next.thickness, std::move(close), crossings, next.gap, nullptr);
     found.perforations = group_crossings(next.model, crossings);
     found.depths = perforation_depths(next.model, next.tree, found.perforations, 0);
     for (const PerforationDepth& depth : found.depths) found.measured.push_back(measured_box(next.model, next.tree, depth));

@@ -7,8 +7,10 @@
 
 #include "base/progress.h"
 #include "mesh/contact/contact_thickness.h"
+#include "mesh/contact/pair_pool.h"
 #include "mesh/contact/penetrations.h"
 #include "mesh/contact/perforations.h"
+#include "mesh/contact/shell_crossings.h"
 #include "mesh/model/model.h"
 #include "mesh/spatial/box_tree.h"
 
@@ -25,10 +27,10 @@ struct StateToSearch {
 class KeptContacts {
  public:
   /// Finds the contacts of a state, bit for bit as find_perforations, perforation_depths and find_penetrations do. Of another state of the
-  /// same model (the next one, or any other) only those regions are found again whose shells changed, or are so near a changed one that a
-  /// path over the sheet may have changed, or are connected with such ones; all where more than an eighth of the shells changed. Shells,
-  /// nodes and parts that both states have keep their index. `progress`: as of the searches, 0 to 1. Returns whether it wasn't stopped;
-  /// stopped, everything is as before.
+  /// same model (the next one, or any other) only pairs about changed shells are measured, and those regions put together again whose
+  /// shells changed, or are so near a changed one that a path over the sheet may have changed, or are connected with such ones; all where
+  /// more than an eighth of the shells changed. Shells, nodes and parts that both states have keep their index. `progress`: as of the
+  /// searches, 0 to 1. Returns whether it wasn't stopped; stopped, everything is as before.
   bool search(const StateToSearch& state, const Progress& progress = {});
 
   const std::vector<Perforation>& perforations() const { return found_.perforations; }  ///< as find_perforations
@@ -42,6 +44,11 @@ class KeptContacts {
     std::vector<spatial::FloatBox> measured;  ///< of each depth: a change that doesn't touch this box doesn't change it
     std::vector<Penetration> penetrations;
   };
+  /// All pairs that cross or are too close, whether they count or not.
+  struct Pairs {
+    PairPool<ShellCrossing> crossings;
+    PairPool<CloseShells> close;
+  };
   struct State {
     Model model;
     spatial::BoxTree tree;
@@ -52,6 +59,7 @@ class KeptContacts {
   class Update;
 
   std::optional<State> at_;
+  Pairs pairs_;
   Regions found_;
 };
 
