@@ -13,6 +13,7 @@
 #include "mesh/contact/find_perforations.h"
 #include "mesh/contact/kept_contacts.h"
 #include "mesh/contact/moved_shells.h"
+#include "mesh/contact/new_contacts.h"
 #include "mesh/contact/perforation_depth.h"
 #include "mesh/contact/separate.h"
 #include "mesh/model/adjacency.h"
@@ -161,6 +162,25 @@ BENCHMARK(search_crossing_layers_after_an_edit)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime()
     ->MeasureProcessCPUTime();
+
+/// What a rule asks of an edit: its new contacts. Nodes about the middle of the lower of two layers, 12 to 28 mm apart, up by 8 mm, where
+/// nothing touches. A pull that stops asks eleven times.
+void find_new_contacts(benchmark::State& state) {
+  const Model model = with_its_adjacency(two_layers(20));
+  const contact::ContactsBefore before(model, spatial::BoxTree(model),
+                                       std::make_shared<const contact::ContactThickness>(contact::given_thickness(model, 3)));
+  const auto side = static_cast<std::size_t>(std::sqrt(static_cast<double>(state.range(0))));
+  Model moved = model;
+  for (std::size_t j = 0; j < side; ++j)
+    for (std::size_t i = 0; i < side; ++i) {
+      const std::size_t node = (250 - side / 2 + j) * 1001 + 500 - side / 2 + i;
+      moved.positions.set(node, model.positions[node] + Vec3(0, 0, 8));
+    }
+  std::size_t found = 0;
+  for ([[maybe_unused]] auto _ : state) found = before.new_in(moved).size();
+  state.counters["found"] = static_cast<double>(found);
+}
+BENCHMARK(find_new_contacts)->Arg(100)->Arg(1000)->Arg(10000)->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();
 
 /// Two smooth layers, 10 mm apart; a bead of the upper one is pulled through the lower one by 2 mm. Smooth, as rough shells fail when they
 /// are moved at all.

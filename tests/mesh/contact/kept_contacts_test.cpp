@@ -99,7 +99,9 @@ class Edits {
     return all.model();
   }
   void move(Model& model) {
-    const Vec3 centre = model.positions[below(model.node_count())], by(uniform(-0.3, 0.3), uniform(-0.3, 0.3), uniform(-0.6, 0.6));
+    const Vec3 centre = model.positions[below(model.node_count())];
+    const double x = uniform(-0.3, 0.3), y = uniform(-0.3, 0.3), z = uniform(-0.6, 0.6);  // in this order with any compiler
+    const Vec3 by(x, y, z);
     const double radius = uniform(0.3, 2.5);
     for (std::size_t n = 0; n < model.node_count(); ++n)
       if ((model.positions[n] - centre).norm() < radius) model.positions.set(n, model.positions[n] + by);
