@@ -9,7 +9,7 @@ namespace prismesh::modeld {
 Result<DragSession> DragSession::begin(std::uint64_t number, const mesh::document::Document& document, const mesh::document::Edit& edit,
                                        mesh::document::ContactSearch& contact) {
   std::shared_ptr<const mesh::document::Generation> base = document.generations[document.cursor];
-  Result<mesh::document::Drag> drag = mesh::document::Drag::begin(base, edit);
+  Result<mesh::document::Drag> drag = mesh::document::Drag::begin(base, edit, &contact);
   if (!drag) return fail(std::move(drag.error()));
   Result<ipc::PreviewWriter> preview = ipc::PreviewWriter::create(number, base->number, drag->nodes(), drag->shells());
   if (!preview) return fail(std::move(preview.error()));

@@ -156,21 +156,28 @@ void finish(const Model& model, const ContactThickness& thickness, double gap, P
 
 }  // namespace
 
+bool comes_first(const Penetration& x, const Penetration& y) {
+  return std::tuple(-x.max_depth, x.part_a, x.part_b, x.shells_a, x.shells_b) <
+         std::tuple(-y.max_depth, y.part_a, y.part_b, y.shells_a, y.shells_b);
+}
+
+std::vector<Penetration> group_close_shells(const Model& model, const ContactThickness& thickness, std::vector<CloseShells> pairs,
+                                            const std::vector<ShellCrossing>& crossings, double gap, const ShellSet* selected) {
+  leave_out_crossings(pairs, crossings);
+  leave_out_junctions(model, pairs);
+  std::vector<Penetration> found = group(model, pairs, crossings, selected);
+  parallel_for(found.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) finish(model, thickness, gap, found[i]);
+  });
+  std::sort(found.begin(), found.end(), [](const Penetration& x, const Penetration& y) { return comes_first(x, y); });
+  return found;
+}
+
 std::vector<Penetration> find_penetrations(const Model& model, const spatial::BoxTree& tree, const ContactThickness& thickness,
                                            const std::vector<ShellCrossing>& crossings, const PenetrationWish& wish,
                                            const Progress& progress) {
-  Pairs pairs = find_close_shells(model, tree, thickness, wish.gap, wish.among, progress);
-  leave_out_crossings(pairs, crossings);
-  leave_out_junctions(model, pairs);
-  std::vector<Penetration> found = group(model, pairs, crossings, wish.selected);
-  parallel_for(found.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) finish(model, thickness, wish.gap, found[i]);
-  });
-  std::sort(found.begin(), found.end(), [](const Penetration& x, const Penetration& y) {
-    return std::tuple(-x.max_depth, x.part_a, x.part_b, x.shells_a, x.shells_b) <
-           std::tuple(-y.max_depth, y.part_a, y.part_b, y.shells_a, y.shells_b);
-  });
-  return found;
+  return group_close_shells(model, thickness, find_close_shells(model, tree, thickness, wish.gap, wish.among, progress), crossings,
+                            wish.gap, wish.selected);
 }
 
 }  // namespace prismesh::mesh::contact

@@ -26,4 +26,10 @@ std::vector<Penetration> find_penetrations(const Model& model, const spatial::Bo
                                            const std::vector<ShellCrossing>& crossings, const PenetrationWish& wish = {},
                                            const Progress& progress = {});
 
+/// The second step: of all pairs that find_close_shells gives, or those of some whole regions and their crossings, both ascending.
+std::vector<Penetration> group_close_shells(const Model& model, const ContactThickness& thickness, std::vector<CloseShells> pairs,
+                                            const std::vector<ShellCrossing>& crossings, double gap, const ShellSet* selected);
+/// The order of regions.
+bool comes_first(const Penetration& x, const Penetration& y);
+
 }  // namespace prismesh::mesh::contact

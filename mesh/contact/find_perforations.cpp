@@ -32,6 +32,11 @@ void finish(Perforation& region) {
 
 }  // namespace
 
+bool comes_first(const Perforation& x, const Perforation& y) {
+  return std::tuple(-x.length, x.part_a, x.part_b, x.shells_a, x.shells_b) <
+         std::tuple(-y.length, y.part_a, y.part_b, y.shells_a, y.shells_b);
+}
+
 std::vector<Perforation> group_crossings(const Model& model, const std::vector<ShellCrossing>& crossings) {
   std::vector<SidedPair> pairs;
   pairs.reserve(crossings.size());
@@ -51,10 +56,7 @@ std::vector<Perforation> group_crossings(const Model& model, const std::vector<S
     region.curve.insert(region.curve.end(), crossings[p].segments.begin(), crossings[p].segments.end());
   }
   for (Perforation& region : found) finish(region);
-  std::sort(found.begin(), found.end(), [](const Perforation& x, const Perforation& y) {
-    return std::tuple(-x.length, x.part_a, x.part_b, x.shells_a, x.shells_b) <
-           std::tuple(-y.length, y.part_a, y.part_b, y.shells_a, y.shells_b);
-  });
+  std::sort(found.begin(), found.end(), [](const Perforation& x, const Perforation& y) { return comes_first(x, y); });
   return found;
 }
 

@@ -14,6 +14,9 @@ namespace prismesh::mesh::contact {
 /// the model has its adjacency.
 std::vector<Perforation> group_crossings(const Model& model, const std::vector<ShellCrossing>& crossings);
 
+/// The order of regions.
+bool comes_first(const Perforation& x, const Perforation& y);
+
 /// Both steps. Preconditions and what counts as a crossing: find_shell_crossings.
 std::vector<Perforation> find_perforations(const Model& model, const spatial::BoxTree& tree);
 

@@ -96,7 +96,9 @@ PerforationDepth depth_of_piece(const Model& model, const spatial::BoxTree& tree
 PerforationDepth depth_of(const Model& model, const spatial::BoxTree& tree, const Perforation& perforation, double thickness_share) {
   std::vector<NodeIndex> of_a = cut_off_nodes(model, perforation, true), of_b = cut_off_nodes(model, perforation, false);
   const bool a_enters = !of_a.empty() && (of_b.empty() || area_at(model, of_a) <= area_at(model, of_b));
-  return depth_of_piece(model, tree, perforation, a_enters, std::move(a_enters ? of_a : of_b), thickness_share);
+  PerforationDepth depth = depth_of_piece(model, tree, perforation, a_enters, std::move(a_enters ? of_a : of_b), thickness_share);
+  depth.other_cut_off = std::move(a_enters ? of_b : of_a);
+  return depth;
 }
 
 }  // namespace

@@ -27,6 +27,7 @@ struct PerforationDepth {
   double mean = 0;            ///< over those nodes
   std::vector<Vec3> nearest;  ///< of each entering node the other side's nearest point; the node itself where there is none
   NodeIndex deepest;          ///< where the max is; of equal ones the first
+  NodeSet other_cut_off;      ///< nodes that the curve cuts off from the side that doesn't enter, ascending
 };
 
 }  // namespace prismesh::mesh::contact

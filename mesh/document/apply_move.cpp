@@ -1,8 +1,11 @@
 #include <algorithm>
 #include <array>
+#include <optional>
 
 #include "base/counted.h"
+#include "base/readable_number.h"
 #include "mesh/document/apply.h"
+#include "mesh/document/contact_rule.h"
 #include "mesh/document/deck_relations.h"
 #include "mesh/document/dependents_report.h"
 #include "mesh/document/edit_kinds.h"
@@ -12,6 +15,8 @@
 namespace prismesh::mesh::document {
 
 namespace {
+
+constexpr int kDigitsOfShare = 3;
 
 /// Writes the positions that differ; returns the nodes that moved.
 NodeSet put_positions(const NodeSet& nodes, const std::vector<Vec3>& positions, ChunkedArray<Vec3>& into) {
@@ -70,11 +75,27 @@ void note_free_endings(const Model& model, const Motion& motion, EditReport& rep
                            " begins at the rim; \"origin\": \"free_edge\" takes all of it");
 }
 
+/// Puts the positions, as far as the edit's rule on contact lets it go.
+Result<AllowedWay> go(const Generation& current, const Motion& motion, const Edit& edit, std::vector<Vec3>& positions, EditReport& report) {
+  const ContactRule rule = shaping_of(edit)->contact.value_or(ContactRule::allow);
+  std::optional<ContactsOf> before;
+  if (rule != ContactRule::allow) before.emplace(current);
+  AllowedWay way = positions_under(rule, before ? &*before : nullptr, motion, displacement_of(edit), positions);
+  if (way.ahead.empty()) return way;
+  const std::string_view edit_name = name(edit);
+  if (rule == ContactRule::refuse) return fail(refused_contact(edit_name, current.model, way.ahead));
+  const std::string why = contact::in_words(current.model, way.ahead);
+  if (way.share == 0) return fail("", std::string(edit_name) + ": no share of the way is free: " + why);
+  report.notes.push_back("stopped at " + readable(100 * way.share, kDigitsOfShare) + " % of the way: farther on, " + why);
+  return way;
+}
+
 Result<void> move(const Document& document, const Edit& edit, Generation& next, EditReport& report) {
   const Result<Motion> motion = plan_motion(document.current(), edit, document.deck.get());
   if (!motion) return fail(motion.error());
   std::vector<Vec3> positions(motion->nodes.size());
-  const std::size_t held_back = positions_at(*motion, displacement_of(edit), positions);
+  const Result<AllowedWay> way = go(document.current(), *motion, edit, positions, report);
+  if (!way) return fail(way.error());
   for (const Vec3& position : positions)
     if (!position.allFinite()) return fail("", std::string(name(edit)) + ": the displacement is too large to be a coordinate");
   const NodeSet moved = put_positions(motion->nodes, positions, next.model.positions);
@@ -88,11 +109,11 @@ Result<void> move(const Document& document, const Edit& edit, Generation& next, 
   note_free_endings(next.model, *motion, report);
   if (motion->without_image > 0)
     report.notes.push_back(counted(motion->without_image, "node") + " without an image on the other side of the plane of symmetry");
-  if (held_back > 0) report.notes.push_back(counted(held_back, "node") + " held back by max_move");
+  if (way->held_back > 0) report.notes.push_back(counted(way->held_back, "node") + " held back by max_move");
   note_attached(document.current().relations->element_uses, moved, report);
   report_dependents(document.current(), next, moved, report);
   const Model& before = document.current().model;
-  report_inverted(before, inverted_shells(before, next.model, touched, *motion, displacement_of(edit).degrees), report);
+  report_inverted(before, inverted_shells(before, next.model, touched, *motion, way->share * displacement_of(edit).degrees), report);
   return {};
 }
 

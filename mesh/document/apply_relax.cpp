@@ -1,12 +1,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <span>
 
 #include "base/counted.h"
 #include "base/readable_number.h"
 #include "mesh/document/apply.h"
+#include "mesh/document/contact_rule.h"
 #include "mesh/document/dependents_report.h"
 #include "mesh/document/edit_targets.h"
 #include "mesh/document/pins.h"
@@ -19,6 +21,7 @@ namespace prismesh::mesh::document {
 
 namespace {
 
+constexpr int kTriesOfRing = 3;      ///< after so many the neighbours in one ring more stay
 constexpr double kThreshold = 0.15;  ///< of the target size, if the edit has none
 
 Result<void> refuse_unsound(const Relax& edit) {
@@ -99,6 +102,44 @@ void say_how(const relax::Relaxed& relaxed, EditReport& report) {
   if (relaxed.limited > 0) report.notes.push_back(counted(relaxed.limited, "node") + " stopped at max_move");
 }
 
+/// The nodes that make a contact when they are relaxed; with their neighbours in `rings` rings. Ascending.
+NodeSet makers_of(const Model& model, const std::vector<contact::NewContact>& contacts, int rings) {
+  ShellSet shells;
+  for (const contact::NewContact& contact : contacts) shells.insert(shells.end(), contact.by.begin(), contact.by.end());
+  std::sort(shells.begin(), shells.end());
+  shells.erase(std::unique(shells.begin(), shells.end()), shells.end());
+  for (int ring = 0; ring < rings; ++ring) shells = shells_touching(model, nodes_of(model, shells));
+  return nodes_of(model, shells);
+}
+
+/// Relaxes under a rule on contact: nodes that would make one stay, and the others are relaxed again, until there is none. Errors: as
+/// relaxing; refused.
+Result<relax::Relaxed> relax_under(ContactRule rule, const Generation& current, NodeSet movable, EditReport& report,
+                                   const std::function<Result<relax::Relaxed>(const NodeSet&)>& relax) {
+  Result<relax::Relaxed> relaxed = relax(movable);
+  if (rule == ContactRule::allow || !relaxed || relaxed->nodes.empty()) return relaxed;
+  const ContactsOf before(current);
+  std::string why;
+  std::size_t stay = 0;
+  for (int tries = 1; relaxed && !relaxed->nodes.empty(); ++tries) {
+    Generation trial = current;
+    for (std::size_t i = 0; i < relaxed->nodes.size(); ++i) trial.model.positions.set(relaxed->nodes[i].value, relaxed->positions[i]);
+    const std::vector<contact::NewContact> found = before.new_in(trial);
+    if (found.empty()) break;
+    if (rule == ContactRule::refuse) return fail(refused_contact("relax", current.model, found));
+    if (why.empty()) why = contact::in_words(current.model, found);
+    // Each try holds at least one node more. The rings grow, so that few tries are enough.
+    const NodeSet makers = makers_of(current.model, found, tries / kTriesOfRing);
+    NodeSet left;
+    std::set_difference(movable.begin(), movable.end(), makers.begin(), makers.end(), std::back_inserter(left));
+    stay += movable.size() - left.size();
+    movable = std::move(left);
+    relaxed = relax(movable);
+  }
+  if (relaxed && stay > 0) report.notes.push_back(counted(stay, "node") + " left in place: " + why);
+  return relaxed;
+}
+
 void put_positions(const Document& document, const relax::Relaxed& relaxed, Generation& next, EditReport& report) {
   for (std::size_t i = 0; i < relaxed.nodes.size(); ++i) next.model.positions.set(relaxed.nodes[i].value, relaxed.positions[i]);
   const NodeSet followed = let_middles_follow(document.current().model, relaxed.nodes, next);
@@ -140,7 +181,10 @@ Result<void> apply_edit(const Document& document, const Relax& edit, Generation&
   const double threshold = edit.threshold ? *edit.threshold : at.valid() ? kThreshold * target_size_at(document, at) : 0;
   const relax::RelaxInput input{current.model, surface, criteria, options};
   const Result<relax::Relaxed> relaxed =
-      edit.mode == RelaxMode::from ? relax::relax_from(input, {at, threshold}, movable, progress) : relax::relax(input, movable, progress);
+      relax_under(edit.contact.value_or(ContactRule::allow), current, movable, report, [&](const NodeSet& nodes) {
+        return edit.mode == RelaxMode::from ? relax::relax_from(input, {at, threshold}, nodes, progress)
+                                            : relax::relax(input, nodes, progress);
+      });
   if (!relaxed) return fail(relaxed.error());
   say_how(*relaxed, report);
   put_positions(document, *relaxed, next, report);

@@ -1,13 +1,19 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <iterator>
 #include <memory>
+#include <optional>
+#include <string>
 #include <tuple>
 
 #include "base/counted.h"
 #include "mesh/document/apply.h"
 #include "mesh/document/clusters.h"
+#include "mesh/document/contact_rule.h"
+#include "mesh/document/held_apart.h"
+#include "mesh/document/history.h"
 #include "mesh/document/restructure.h"
 #include "mesh/document/scope.h"
 #include "mesh/document/unwritable.h"
@@ -39,6 +45,7 @@ struct Reached {
   repair::Repaired repaired;  ///< its change is one of the document's current generation; indices are those that it gives
   Frozen frozen;              ///< of the last pass: shells that had to stay as they are, since the deck can't be written otherwise
   Frozen ever_frozen;         ///< of all passes
+  std::string held_apart;     ///< of the last pass that held shells back from contacts: how many, and why
   std::shared_ptr<const Generation> generation;  ///< null: nothing has changed
   EditReport figures;                            ///< of applying the change
 };
@@ -141,27 +148,43 @@ struct PassInput {
   const repair::Options& options;
   const ShellSet& scope;
   const NodeSet& clusters;
+  const ContactsOf* contacts;  ///< that it must not add to; null: none is looked for
 };
 
 /// What a pass made of the generation that it began with.
 struct Pass {
   repair::Repaired repaired;
   Frozen frozen;
+  HeldApart held;
   std::shared_ptr<const Generation> generation;  ///< null: nothing has changed
   EditReport figures;
 };
 
-/// Repairs the scope, and repeats without the changes that can't be written. Errors: cancelled; no set of changes can be written; stopped
-/// before one was found.
+/// What a pass makes of the contacts of a change that can be written.
+enum class Verdict : std::uint8_t { keep, again };
+
+/// Errors: contacts are refused; the repair was stopped, so that it can't go on without the shells that made them.
+Result<Verdict> judge_contacts(const PassInput& input, const Generation& trial, Pass& pass) {
+  if (input.contacts == nullptr) return Verdict::keep;
+  const std::vector<contact::NewContact> made = input.contacts->new_in(trial);
+  if (made.empty()) return Verdict::keep;
+  if (input.edit.contact == ContactRule::refuse) return fail(refused_contact("repair", trial.model, made));
+  if (pass.repaired.stopped) return fail("", "the repair was stopped, and nothing of it is kept: " + contact::in_words(trial.model, made));
+  pass.held.hold(input.document.current().model, pass.repaired.change, trial.model, made);
+  return Verdict::again;
+}
+
+/// Repairs the scope, and repeats without the changes that can't be written or make contacts that they must not. Errors: cancelled; no set
+/// of changes can be written; stopped before one was found; as judge_contacts.
 Result<Pass> repair_writable(const PassInput& input, RepairProgress& progress) {
   const Document& document = input.document;
   const Generation& current = document.current();
   Pass pass;
   repair::Options options = input.options;
   const relax::ReferenceSurface surface = surface_about(current, input.scope, options.relax.feature_angle);
-  const repair::Rules rules = with_frozen(rules_for(document, current), pass.frozen);
+  const repair::Rules rules = pass.held.with(with_frozen(rules_for(document, current), pass.frozen));
   const Progress forward = [&](double fraction, const Doing& doing) { return progress.report(fraction, doing); };
-  for (int tries = 1;; ++tries) {
+  for (int tries = 1;;) {
     ++progress.attempt;
     options.stop_at.clear();
     if (input.edit.stop_at && input.edit.stop_at->attempt == progress.attempt) options.stop_at = input.edit.stop_at->steps;
@@ -175,24 +198,18 @@ Result<Pass> repair_writable(const PassInput& input, RepairProgress& progress) {
     pass.figures = {};
     const Result<void> done = restructure(document, pass.repaired.change, trial, pass.figures);
     if (done) {
+      const Result<Verdict> verdict = judge_contacts(input, trial, pass);
+      if (!verdict) return fail(verdict.error());
+      if (*verdict == Verdict::again) continue;
       pass.generation = std::make_shared<const Generation>(std::move(trial));
       return pass;
     }
     if (pass.repaired.stopped) return fail(stopped_too_early(done.error()));
-    if (tries == kMaxAttempts) return fail(done.error());
+    if (tries++ == kMaxAttempts) return fail(done.error());
     const Result<std::size_t> found = find_unwritable(document, current.model, pass.repaired.change, pass.frozen, forward);
     if (!found) return fail(progress.keeps() ? stopped_too_early(done.error()) : found.error());
     if (*found == 0) return fail(done.error());
   }
-}
-
-/// The document with a further generation as its current one.
-Document with_current(const Document& document, std::shared_ptr<const Generation> generation) {
-  Document further = document;
-  further.generations.resize(document.cursor + 1);
-  further.generations.push_back(std::move(generation));
-  further.cursor = further.generations.size() - 1;
-  return further;
 }
 
 /// Keeps those pairs that are still edges between two triangles.
@@ -269,6 +286,8 @@ void add_reasons(Pass pass, Reached& reached) {
 Result<Reached> repair_in_passes(const Document& document, const Repair& edit, RepairProgress& progress) {
   repair::Options options = options_of(edit.angle, edit.max_move);
   options.moves_from = &document.current().model;
+  std::optional<ContactsOf> contacts;
+  if (edit.contact.value_or(ContactRule::allow) != ContactRule::allow) contacts.emplace(document.current());
   Reached reached;
   Document at = document;
   for (;; ++progress.pass) {
@@ -281,12 +300,13 @@ Result<Reached> repair_in_passes(const Document& document, const Repair& edit, R
     if (is_done) return reached;
     ShellSet shells;
     std::set_union(scope->begin(), scope->end(), clusters.shells.begin(), clusters.shells.end(), std::back_inserter(shells));
-    Result<Pass> pass = repair_writable({at, edit, options, shells, clusters.nodes}, progress);
+    Result<Pass> pass = repair_writable({at, edit, options, shells, clusters.nodes, contacts ? &*contacts : nullptr}, progress);
     // A stop must end as its replay does, which has no other place to stop at: so the passes before can't be kept either.
     if (!pass && (progress.pass == 0 || is_cancelled(pass.error()) || progress.is_told_to_stop())) return fail(pass.error());
     if (!pass) return reached;
     for (const auto& [shell, held] : pass->frozen.shells)
       if (shell.value < document.current().model.shell_count()) reached.ever_frozen.shells.insert({shell, held});
+    if (std::string note = pass->held.note(); !note.empty()) reached.held_apart = std::move(note);
     if (progress.pass == 0) {
       reached.repaired.bad_before = pass->repaired.bad_before;
       reached.repaired.clusters_before = pass->repaired.clusters_before;
@@ -327,6 +347,7 @@ Result<void> apply_edit(const Document& document, const Repair& edit, Generation
   note_triangle_pairs(repaired, report);
   note_unrepaired(repaired, reached->frozen, next.model, report);
   note_clusters_left(repaired, next.model, report);
+  if (!reached->held_apart.empty()) report.notes.push_back(std::move(reached->held_apart));
   for (std::string& note : notes_of(reached->ever_frozen)) report.notes.push_back(std::move(note));
   return {};
 }

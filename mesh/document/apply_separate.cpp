@@ -17,8 +17,10 @@
 #include "mesh/document/contacts.h"
 #include "mesh/document/deck_relations.h"
 #include "mesh/document/dependents_report.h"
+#include "mesh/document/history.h"
 #include "mesh/document/joined_sheets.h"
 #include "mesh/document/pins.h"
+#include "mesh/document/selection.h"
 #include "mesh/select/expression.h"
 
 namespace prismesh::mesh::document {
@@ -35,8 +37,8 @@ constexpr std::string_view kCarry = "carry welds or ties";
 
 Result<void> refuse_unsound(const Separate& edit) {
   const auto sound = [](double value) { return std::isfinite(value) && value >= 0; };
-  if (edit.follow != FollowUp::none)
-    return fail("", "separate: \"follow\" can only be \"none\" in this version: relax or repair afterwards");
+  if (edit.follow != FollowUp::none && edit.gap > 0)
+    return fail("", "separate: \"follow\" keeps shells apart by their thicknesses, not by a gap: leave one of the two out");
   if (!sound(edit.gap) || !sound(edit.allowed_depth)) return fail("", "separate: gap and allowed_depth must be at least 0");
   if (edit.max_move && !(sound(*edit.max_move) && *edit.max_move > 0)) return fail("", "separate: max_move must be greater than 0");
   if (edit.direction && !(edit.direction->allFinite() && edit.direction->norm() > 0))
@@ -117,6 +119,42 @@ void put_positions(const Document& document, const contact::Separation& done, Ge
   report_dependents(document.current(), next, moved, report);
 }
 
+/// Relaxes or repairs `next` about the nodes that moved, so that it makes no new contact. Errors: as these; cancelled.
+Result<void> follow_up(const Document& document, FollowUp follow, const NodeSet& moved, Generation& next, EditReport& report,
+                       const Progress& progress) {
+  const Selection selected = selection_of(next);
+  Selection about;
+  about.nodes = follow == FollowUp::relax ? nodes_of(next.model, shells_touching(next.model, moved)) : moved;
+  put_selection(next, selected, about);
+  const Document separated = with_current(document, std::make_shared<const Generation>(next));
+  EditReport more;
+  const Progress forward = [&](double fraction) { return !progress || progress(fraction); };  // a stop keeps nothing
+  Result<void> done;
+  if (follow == FollowUp::relax) {
+    Relax edit;
+    edit.contact = ContactRule::keep_apart;
+    done = document::apply_edit(separated, edit, next, more, forward);
+  } else {
+    Repair edit;
+    edit.scope = Scope::selection;
+    edit.contact = ContactRule::keep_apart;
+    done = document::apply_edit(separated, edit, next, more, forward);
+  }
+  if (!done) return done;
+  Selection back = selected;
+  std::erase_if(back.nodes, [&](NodeIndex node) { return next.model.is_removed(node); });
+  std::erase_if(back.shells, [&](ShellIndex shell) { return next.model.is_removed(shell); });
+  put_selection(next, selection_of(next), back);
+  report.nodes_moved = moved_nodes(document.current().model, next.model).size();
+  report.elements_added = more.elements_added;
+  report.elements_removed = more.elements_removed;
+  report.triangle_pairs = more.triangle_pairs;
+  report.lost_connections += more.lost_connections;
+  report.lost.insert(report.lost.end(), more.lost.begin(), more.lost.end());
+  for (const std::string& note : more.notes) report.notes.push_back((follow == FollowUp::relax ? "relaxed: " : "repaired: ") + note);
+  return {};
+}
+
 }  // namespace
 
 Result<void> apply_edit(const Document& document, const Separate& edit, Generation& next, EditReport& report, const Progress& progress) {
@@ -148,8 +186,10 @@ Result<void> apply_edit(const Document& document, const Separate& edit, Generati
                                                              wish, progress);
   if (!done) return fail(done.error());
   say_what(current.model, *done, report);
-  if (!done->nodes.empty()) put_positions(document, *done, next, report);
-  return {};
+  if (done->nodes.empty()) return {};
+  put_positions(document, *done, next, report);
+  if (edit.follow == FollowUp::none) return {};
+  return follow_up(document, edit.follow, done->nodes, next, report, progress);
 }
 
 }  // namespace prismesh::mesh::document

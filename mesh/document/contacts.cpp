@@ -92,16 +92,19 @@ class RegionWriter {
   contact::DeckContacts contacts_;
 };
 
-bool has_any(const ShellSet& shells, const ShellSet& of) {
-  return std::any_of(shells.begin(), shells.end(), [&](ShellIndex shell) { return std::binary_search(of.begin(), of.end(), shell); });
+void write_regions(const RegionWriter& writer, const std::vector<contact::Perforation>& crossed,
+                   const std::vector<contact::PerforationDepth>& depths, const std::vector<contact::Penetration>& close,
+                   Contacts& contacts) {
+  contacts.perforations = crossed.size();
+  for (std::size_t i = 0; i < crossed.size(); ++i) contacts.regions.push_back(writer.perforation(crossed[i], depths[i]));
+  for (const contact::Penetration& found : close) {
+    ++(found.is_clearance ? contacts.clearances : contacts.penetrations);
+    contacts.regions.push_back(writer.penetration(found));
+  }
 }
 
-template <class T>
-bool same_chunks(const ChunkedArray<T>& a, const ChunkedArray<T>& b) {
-  if (a.size() != b.size()) return false;
-  for (std::size_t c = 0; c < a.chunk_count(); ++c)
-    if (!a.shares_chunk(b, c)) return false;
-  return true;
+bool has_any(const ShellSet& shells, const ShellSet& of) {
+  return std::any_of(shells.begin(), shells.end(), [&](ShellIndex shell) { return std::binary_search(of.begin(), of.end(), shell); });
 }
 
 /// Tells the listener shares of the whole, and remembers whether it stopped the work.
@@ -177,25 +180,23 @@ Result<Contacts> find_contacts(const Generation& generation, ContactSearch& sear
       wish.thickness     ? std::make_shared<const contact::ContactThickness>(contact::given_thickness(model, *wish.thickness))
       : wish.by_contacts ? search.thickness(generation)
                          : search.section_thickness(model);
-  const std::vector<contact::ShellCrossing> crossings =
-      contact::find_shell_crossings(model, tree, nullptr, share.from_to(kTreeBuilt, kCrossingsFound));
-  if (share.stopped()) return fail(cancelled());
-  const std::vector<contact::Penetration> close =
-      contact::find_penetrations(model, tree, *thickness, crossings, {wish.gap, only}, share.from_to(kCrossingsFound, 1));
-  if (share.stopped()) return fail(cancelled());
-
-  std::vector<contact::Perforation> crossed = contact::group_crossings(model, crossings);
-  if (only != nullptr)
-    std::erase_if(crossed,
-                  [&](const contact::Perforation& found) { return !has_any(found.shells_a, *only) && !has_any(found.shells_b, *only); });
-  const std::vector<contact::PerforationDepth> depths = contact::perforation_depths(model, tree, crossed, 0);
   const RegionWriter writer(generation, *thickness);
   Contacts contacts;
-  contacts.perforations = crossed.size();
-  for (std::size_t i = 0; i < crossed.size(); ++i) contacts.regions.push_back(writer.perforation(crossed[i], depths[i]));
-  for (const contact::Penetration& found : close) {
-    ++(found.is_clearance ? contacts.clearances : contacts.penetrations);
-    contacts.regions.push_back(writer.penetration(found));
+  if (only == nullptr) {
+    if (!search.kept().search({model, tree, thickness, wish.gap}, share.from_to(kTreeBuilt, 1))) return fail(cancelled());
+    const contact::KeptContacts& kept = search.kept();
+    write_regions(writer, kept.perforations(), kept.depths(), kept.penetrations(), contacts);
+  } else {
+    const std::vector<contact::ShellCrossing> crossings =
+        contact::find_shell_crossings(model, tree, nullptr, share.from_to(kTreeBuilt, kCrossingsFound));
+    if (share.stopped()) return fail(cancelled());
+    const std::vector<contact::Penetration> close =
+        contact::find_penetrations(model, tree, *thickness, crossings, {wish.gap, only}, share.from_to(kCrossingsFound, 1));
+    if (share.stopped()) return fail(cancelled());
+    std::vector<contact::Perforation> crossed = contact::group_crossings(model, crossings);
+    std::erase_if(crossed,
+                  [&](const contact::Perforation& found) { return !has_any(found.shells_a, *only) && !has_any(found.shells_b, *only); });
+    write_regions(writer, crossed, contact::perforation_depths(model, tree, crossed, 0), close, contacts);
   }
   for (const PartIndex part : thickness->without) contacts.without_thickness.push_back((*model.parts)[part.value].id);
   return contacts;

@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/progress.h"
 #include "mesh/contact/contact_thickness.h"
+#include "mesh/contact/kept_contacts.h"
 #include "mesh/contact/triangle_crossing.h"
 #include "mesh/document/generation.h"
 #include "mesh/model/node_set.h"
@@ -27,11 +28,14 @@ class ContactSearch {
   std::shared_ptr<const contact::ContactThickness> section_thickness(const Model& model);
   /// As contact_thickness(); of decks without contacts that can be read it costs no more than section_thickness().
   std::shared_ptr<const contact::ContactThickness> thickness(const Generation& generation);
+  /// What was found last, of all shells.
+  contact::KeptContacts& kept() { return kept_; }
 
  private:
   std::optional<spatial::BoxTree> tree_;
   std::shared_ptr<const contact::ContactThickness> thickness_;
   std::optional<Model> thickness_of_;
+  contact::KeptContacts kept_;
 };
 
 struct ContactWish {
@@ -77,7 +81,8 @@ struct Contacts {
 /// How thick shells are in the deck's contacts; in decks without contacts that can be read, by elements and sections. Costs all shells.
 contact::ContactThickness contact_thickness(const Generation& generation);
 
-/// On all cores; the same whatever their number. Errors: of the expression; a gap or thickness that isn't usable; cancelled.
+/// On all cores; the same whatever their number. Without `select` costs what differs from the state that was searched last with the same
+/// gap and thicknesses, and the regions about it. Errors: of the expression; a gap or thickness that isn't usable; cancelled.
 Result<Contacts> find_contacts(const Generation& generation, ContactSearch& search, const ContactWish& wish, const Progress& progress = {});
 
 }  // namespace prismesh::mesh::document

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/parallel_for.h"
+#include "mesh/document/contact_rule.h"
 #include "mesh/document/motion.h"
 #include "mesh/document/plan_motion.h"
 #include "mesh/quality/judge.h"
@@ -65,12 +66,13 @@ quality::Counts total(quality::Counts sum, const std::vector<quality::Counts>& p
 
 }  // namespace
 
-Result<Drag> Drag::begin(std::shared_ptr<const Generation> base, const Edit& edit) {
+Result<Drag> Drag::begin(std::shared_ptr<const Generation> base, const Edit& edit, ContactSearch* search) {
   Result<Motion> motion = plan_motion(*base, edit, nullptr);
   if (!motion) return fail(motion.error());
   Drag drag;
   drag.motion_ = std::make_shared<const Motion>(std::move(*motion));
   drag.edit_ = edit;
+  if (shaping_of(edit)->contact == ContactRule::keep_apart) drag.contacts_ = std::make_shared<const ContactsOf>(*base, search);
   drag.positions_ = drag.motion_->start;
   const Model& model = base->model;
   drag.shells_ = shells_touching(model, drag.nodes());
@@ -97,9 +99,11 @@ const Vec3& Drag::normal() const { return motion_->normal; }
 void Drag::step(const Displacement& displacement) {
   if (!displacement.by.allFinite() || !std::isfinite(displacement.distance) || !std::isfinite(displacement.degrees)) return;
   std::vector<Vec3> positions(positions_.size());
-  positions_at(*motion_, displacement, positions);
+  const ContactRule rule = contacts_ != nullptr ? ContactRule::keep_apart : ContactRule::allow;
+  const AllowedWay way = positions_under(rule, contacts_.get(), *motion_, displacement, positions);
   if (!std::all_of(positions.begin(), positions.end(), [](const Vec3& position) { return position.allFinite(); })) return;
   displacement_ = displacement;
+  share_ = way.share;
   positions_ = std::move(positions);
   const quality::LimitsByPart limits = quality::limits_for(sized(*base_->judging));
   std::vector<quality::Counts> counts((corners_.size() + kDragGrain - 1) / kDragGrain);
@@ -155,7 +159,7 @@ Vec3 Drag::worsening_direction(std::size_t shell, float composite) const {
   std::vector<Vec3> positions(positions_.size());
   Vec3 slope;
   for (int axis = 0; axis < 3; ++axis) {
-    Displacement moved = displacement_;
+    Displacement moved = share_of(displacement_, share_);
     moved.by[axis] += step;
     positions_at(*motion_, moved, positions);
     quality::ShellState state;

@@ -89,6 +89,13 @@ struct Symmetry {
   Vec3 normal = Vec3::UnitX();  ///< of any length but zero
 };
 
+/// What an edit that moves shells does where they would cross or come too close that didn't, or come closer (docs/contact.md).
+enum class ContactRule : std::uint8_t {
+  allow,      ///< it isn't looked for
+  refuse,     ///< the edit is refused
+  keep_apart  ///< a shaping edit goes a smaller share of its way; relaxing and repairing leave the nodes where they were
+};
+
 /// What a shaping edit acts on, and how its effect falls off.
 struct Shaping {
   std::optional<TargetNodes> on;      ///< without it the selection
@@ -98,6 +105,7 @@ struct Shaping {
   std::optional<NodeReference> origin_at;  ///< origin free_edge: on this edge, or the edge nearest to it
   std::optional<Symmetry> symmetry;
   std::optional<double> max_move;  ///< of each node; deck's length unit
+  std::optional<ContactRule> contact;
 };
 struct Translate {
   Vec3 by = Vec3::Zero();
@@ -158,6 +166,7 @@ struct Relax {
   Scope scope = Scope::selection;
   double angle = 30;  ///< degrees; sharper edges are features
   MoveLimits max_move;
+  std::optional<ContactRule> contact;
 };
 /// What becomes of what an edit has reached when it is cancelled.
 enum class OnCancel : std::uint8_t { discard, keep };
@@ -173,6 +182,7 @@ struct Repair {
   MoveLimits max_move;
   OnCancel on_cancel = OnCancel::discard;  ///< of a cancel that doesn't say itself that it keeps
   std::optional<StopPoint> stop_at;        ///< the journal writes it
+  std::optional<ContactRule> contact;
 };
 /// One operation, chosen by the user, on shells ("shell:12") or the edge between two nodes ("node:7").
 struct Restructure {
@@ -182,7 +192,7 @@ struct Restructure {
 
 /// Which contacts are separated.
 enum class ContactKind : std::uint8_t { perforation, penetration };
-/// What follows a separation. Only `none` is there yet.
+/// What follows a separation, about what it moved: relaxing or repairing that keeps apart (ContactRule).
 enum class FollowUp : std::uint8_t { none, relax, repair };
 /// Moves shells that cross or are too close apart (docs/contact.md). Lengths are in the deck's unit.
 struct Separate {

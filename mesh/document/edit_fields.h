@@ -29,6 +29,9 @@ PRISMESH_JSON_NAMES(mesh::document::Scope, {{"selection", mesh::document::Scope:
                                             {"damaged", mesh::document::Scope::damaged},
                                             {"failed", mesh::document::Scope::failed}});
 PRISMESH_JSON_NAMES(mesh::document::OnCancel, {{"discard", mesh::document::OnCancel::discard}, {"keep", mesh::document::OnCancel::keep}});
+PRISMESH_JSON_NAMES(mesh::document::ContactRule, {{"allow", mesh::document::ContactRule::allow},
+                                                  {"refuse", mesh::document::ContactRule::refuse},
+                                                  {"keep_apart", mesh::document::ContactRule::keep_apart}});
 PRISMESH_JSON_NAMES(mesh::document::ContactKind,
                     {{"perforation", mesh::document::ContactKind::perforation}, {"penetration", mesh::document::ContactKind::penetration}});
 PRISMESH_JSON_NAMES(mesh::contact::MovingSide, {{"both", mesh::contact::MovingSide::both},
@@ -93,7 +96,7 @@ inline constexpr NumberLimits kNotNegative{0, kMaxNumber};
 inline constexpr NumberLimits kEdgeAngles{0, 180};
 inline constexpr NumberLimits kTurns{-36000, 36000};  ///< degrees: a hundred turns either way
 inline constexpr WholeNumberLimits kRings{1, 1'000'000};
-inline constexpr WholeNumberLimits kAttempts{1, 5};  ///< of a repair
+inline constexpr WholeNumberLimits kAttempts{1, 1000};  ///< of a repair, over its passes
 inline constexpr ListLimits kSteps{1, 1'000'000, "whole numbers like [532, 0]", ""};
 inline constexpr ListLimits kOutline{3, 100'000, "points [x, y]", "point"};
 inline constexpr ListLimits kEntities{1, 1000, "entities like [\"shell:12\", \"shell:40\"]", ""};
@@ -136,7 +139,8 @@ struct Definition<mesh::document::StopPoint> {
 };
 PRISMESH_JSON_OBJECT(mesh::document::Shaping, f("on", m.on), f("grab", m.grab), f("grab_at", m.grab_at), f("falloff", m.weights.falloff),
                      f("free_ends", m.weights.free_ends), f("origin", m.weights.origin), f("origin_at", m.origin_at),
-                     f("across_welds", m.weights.across_welds), f("symmetry", m.symmetry), f("max_move", m.max_move, kPositive));
+                     f("across_welds", m.weights.across_welds), f("symmetry", m.symmetry), f("max_move", m.max_move, kPositive),
+                     f("contact", m.contact));
 
 // --- edits; the field "edit" tells which it is ---
 
@@ -160,9 +164,9 @@ PRISMESH_JSON_OBJECT(mesh::document::Rotate, f.required("point", m.point), f.req
 PRISMESH_JSON_OBJECT(mesh::document::Move, f("by", m.by), f("point", m.point), f("axis", m.axis, DirectionLimits{}),
                      f("degrees", m.degrees, kTurns), Definition<mesh::document::Shaping>::fields(m.shaping, f));
 PRISMESH_JSON_OBJECT(mesh::document::Relax, f("mode", m.mode), f("at", m.at), f("threshold", m.threshold, kPositive), f("scope", m.scope),
-                     f("angle", m.angle, kEdgeAngles), f("max_move", m.max_move));
+                     f("angle", m.angle, kEdgeAngles), f("max_move", m.max_move), f("contact", m.contact));
 PRISMESH_JSON_OBJECT(mesh::document::Repair, f("scope", m.scope), f("angle", m.angle, kEdgeAngles), f("max_move", m.max_move),
-                     f("on_cancel", m.on_cancel), f("stop_at", m.stop_at));
+                     f("on_cancel", m.on_cancel), f("stop_at", m.stop_at), f("contact", m.contact));
 PRISMESH_JSON_OBJECT(mesh::document::Restructure, f.required("at", m.at, kEntities));
 PRISMESH_JSON_OBJECT(mesh::document::Separate, f("on", m.on), f("against", m.against), f("at", m.at), f("kinds", m.kinds, kContactKinds),
                      f("joined", m.joined), f("gap", m.gap, kNotNegative), f("move", m.move),

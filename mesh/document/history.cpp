@@ -65,4 +65,12 @@ std::size_t generations_over_cap(const Document& document, const Generation& nex
   return drop;
 }
 
+Document with_current(const Document& document, std::shared_ptr<const Generation> generation) {
+  Document further = document;
+  further.generations.resize(document.cursor + 1);
+  further.generations.push_back(std::move(generation));
+  further.cursor = further.generations.size() - 1;
+  return further;
+}
+
 }  // namespace prismesh::mesh::document

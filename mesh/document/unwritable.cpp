@@ -149,8 +149,6 @@ std::vector<std::uint32_t> shells_of(const repair::Restructuring& change) {
   return shells;
 }
 
-constexpr std::uint8_t kStaysAsItIs = repair::kKeepsNodes | repair::kIndivisible | repair::kLasting | repair::kNoTriangle;
-
 /// The rule that forbids what a change does to its only shell.
 std::uint8_t rule_against(const Model& model, const repair::Restructuring& change, ShellIndex shell) {
   const bool was_triangle = model.shell(shell).is_triangle();
@@ -236,13 +234,13 @@ class Search {
     if (frozen_.searches <= kFineSearches && look(shells, known, part_of_units, freeze_one)) return;
     if (stopped_) return;
     ++found_;
-    for (const std::uint32_t shell : shells) frozen_.shells[ShellIndex(shell)] = {kStaysAsItIs, why};
+    for (const std::uint32_t shell : shells) frozen_.shells[ShellIndex(shell)] = {repair::kStaysAsItIs, why};
     for (const NodeIndex node : part.removed_nodes) frozen_.nodes.emplace(node, why);
   }
   void freeze_shell(ShellIndex shell, std::uint8_t rules, const std::string& why) {
     ++found_;
     const auto [known, is_new] = frozen_.shells.try_emplace(shell, FrozenShell{rules, why});
-    if (!is_new) known->second = {kStaysAsItIs, why};
+    if (!is_new) known->second = {repair::kStaysAsItIs, why};
   }
 
   const Document& document_;
@@ -281,7 +279,7 @@ std::vector<std::string> notes_of(const Frozen& frozen) {
     const std::string* why = nullptr;
     std::size_t count = 0;
     for (const auto& [shell, held] : frozen.shells) {
-      if ((held.rules == kStaysAsItIs) != whole) continue;
+      if ((held.rules == repair::kStaysAsItIs) != whole) continue;
       ++count;
       if (why == nullptr) why = &held.why;
     }

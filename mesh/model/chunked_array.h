@@ -91,4 +91,13 @@ class ChunkedArray {
   std::size_t size_ = 0;
 };
 
+/// Whether two arrays share all chunks, and so have the same content. Costs the chunks.
+template <class T, std::size_t kSize>
+bool same_chunks(const ChunkedArray<T, kSize>& a, const ChunkedArray<T, kSize>& b) {
+  if (a.size() != b.size()) return false;
+  for (std::size_t c = 0; c < a.chunk_count(); ++c)
+    if (!a.shares_chunk(b, c)) return false;
+  return true;
+}
+
 }  // namespace prismesh::mesh

@@ -20,6 +20,7 @@ enum ShellRule : std::uint8_t {
   kLasting = 4,      ///< it must not be removed
   kNoTriangle = 8,   ///< a quad must stay a quad, and a triangle a triangle
 };
+inline constexpr std::uint8_t kStaysAsItIs = kKeepsNodes | kIndivisible | kLasting | kNoTriangle;
 
 /// An empty function forbids nothing.
 struct Rules {

@@ -11,7 +11,9 @@
 
 #include "mesh/contact/find_penetrations.h"
 #include "mesh/contact/find_perforations.h"
+#include "mesh/contact/kept_contacts.h"
 #include "mesh/contact/moved_shells.h"
+#include "mesh/contact/new_contacts.h"
 #include "mesh/contact/perforation_depth.h"
 #include "mesh/contact/separate.h"
 #include "mesh/model/adjacency.h"
@@ -126,6 +128,59 @@ void begin_a_drag(benchmark::State& state) {
   }
 }
 BENCHMARK(begin_a_drag)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+/// The search after an edit of nodes about the middle of the lower layer, up by 1 mm and back, with what was found before. Shells of 1 mm
+/// in one sheet without contacts; of 3 mm in two layers, 2 to 18 mm apart, that are too close in 86 regions; and of two that cross in 74.
+void search_after_an_edit(benchmark::State& state, Model model, double thick) {
+  contact::KeptContacts kept;
+  spatial::BoxTree tree(model);
+  const auto thickness = std::make_shared<const contact::ContactThickness>(contact::given_thickness(model, thick));
+  if (!kept.search({model, tree, thickness, 0})) state.SkipWithError("stopped");
+  const auto side = static_cast<std::size_t>(std::sqrt(static_cast<double>(state.range(0))));
+  Model moved = model;
+  for (std::size_t j = 0; j < side; ++j)
+    for (std::size_t i = 0; i < side; ++i) {
+      const std::size_t node = (250 - side / 2 + j) * 1001 + 500 - side / 2 + i;
+      moved.positions.set(node, model.positions[node] + Vec3(0, 0, 1));
+    }
+  std::size_t step = 0;
+  for ([[maybe_unused]] auto _ : state) {
+    const Model& next = ++step % 2 == 0 ? model : moved;
+    tree.follow(next);
+    if (!kept.search({next, tree, thickness, 0})) state.SkipWithError("stopped");
+  }
+  state.counters["regions"] = static_cast<double>(kept.perforations().size() + kept.penetrations().size());
+}
+void search_one_sheet_after_an_edit(benchmark::State& state) { search_after_an_edit(state, with_its_adjacency(million_quads()), 1); }
+BENCHMARK(search_one_sheet_after_an_edit)->Arg(100)->Arg(10000)->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();
+void search_close_layers_after_an_edit(benchmark::State& state) { search_after_an_edit(state, with_its_adjacency(two_layers(10)), 3); }
+BENCHMARK(search_close_layers_after_an_edit)->Arg(100)->Arg(10000)->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();
+void search_crossing_layers_after_an_edit(benchmark::State& state) { search_after_an_edit(state, with_its_adjacency(two_layers()), 3); }
+BENCHMARK(search_crossing_layers_after_an_edit)
+    ->Arg(100)
+    ->Arg(10000)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime()
+    ->MeasureProcessCPUTime();
+
+/// What a rule asks of an edit: its new contacts. Nodes about the middle of the lower of two layers, 12 to 28 mm apart, up by 8 mm, where
+/// nothing touches. A pull that stops asks eleven times.
+void find_new_contacts(benchmark::State& state) {
+  const Model model = with_its_adjacency(two_layers(20));
+  const contact::ContactsBefore before(model, spatial::BoxTree(model),
+                                       std::make_shared<const contact::ContactThickness>(contact::given_thickness(model, 3)));
+  const auto side = static_cast<std::size_t>(std::sqrt(static_cast<double>(state.range(0))));
+  Model moved = model;
+  for (std::size_t j = 0; j < side; ++j)
+    for (std::size_t i = 0; i < side; ++i) {
+      const std::size_t node = (250 - side / 2 + j) * 1001 + 500 - side / 2 + i;
+      moved.positions.set(node, model.positions[node] + Vec3(0, 0, 8));
+    }
+  std::size_t found = 0;
+  for ([[maybe_unused]] auto _ : state) found = before.new_in(moved).size();
+  state.counters["found"] = static_cast<double>(found);
+}
+BENCHMARK(find_new_contacts)->Arg(100)->Arg(1000)->Arg(10000)->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();
 
 /// Two smooth layers, 10 mm apart; a bead of the upper one is pulled through the lower one by 2 mm. Smooth, as rough shells fail when they
 /// are moved at all.

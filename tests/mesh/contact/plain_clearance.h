@@ -39,7 +39,7 @@ class PlainClearance {
   static std::vector<Corners> triangles_of(const mesh::Model& model, mesh::PartIndex part) {
     std::vector<Corners> triangles;
     for (std::size_t s = 0; s < model.shell_count(); ++s) {
-      if (model.shell_parts[s] != part) continue;
+      if (model.shell_parts[s] != part || model.is_removed(mesh::ShellIndex(s))) continue;
       const mesh::ShellNodes& nodes = model.shell_nodes[s];
       triangles.push_back({model.position(nodes.node[0]), model.position(nodes.node[1]), model.position(nodes.node[2])});
       if (!nodes.is_triangle())

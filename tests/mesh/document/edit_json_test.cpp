@@ -94,7 +94,7 @@ TEST(EditJson, names_the_nearest_known) {
   EXPECT_EQ(
       why_not(R"({"edit":"lift","distence":1})"),
       "lift has no field \"distence\"; the nearest is \"distance\" (known: edit, distance, normals, on, grab, grab_at, falloff, free_ends, "
-      "origin, origin_at, across_welds, symmetry, max_move)");
+      "origin, origin_at, across_welds, symmetry, max_move, contact)");
   EXPECT_THAT(why_not(R"({"edit":"tranlsate","by":[0,0,1]})"), HasSubstr("there is no edit \"tranlsate\"; the nearest is \"translate\""));
   EXPECT_THAT(why_not(R"({"edit":"lift","distance":1,"falloff":{"profil":"smooth"}})"),
               HasSubstr("lift: \"falloff\" has no field \"profil\"; the nearest is \"profile\""));

@@ -99,7 +99,8 @@ TEST(SeparateEdit, takes_its_fields) {
 TEST(SeparateEdit, refuses_what_it_cannot_do) {
   Document document = make_document(close_sheets(0.4));
   const std::size_t generations = document.generations.size();
-  EXPECT_THAT(refusal(document, R"({"edit":"separate","follow":"relax"})"), HasSubstr("\"follow\" can only be \"none\" in this version"));
+  EXPECT_THAT(refusal(document, R"({"edit":"separate","follow":"relax","gap":0.5})"), HasSubstr("not by a gap"));
+  EXPECT_FALSE(parse_edit(R"({"edit":"separate","follow":"smooth"})"));
   EXPECT_THAT(refusal(document, R"({"edit":"separate","on":"part:77"})"), HasSubstr("77"));
   EXPECT_THAT(refusal(document, R"({"edit":"separate","against":"part:77"})"), HasSubstr("\"against\""));
   EXPECT_FALSE(parse_edit(R"({"edit":"separate","gap":-1})"));
@@ -108,6 +109,34 @@ TEST(SeparateEdit, refuses_what_it_cannot_do) {
   EXPECT_FALSE(parse_edit(R"({"edit":"separate","direction":[0,0,0]})"));
   EXPECT_FALSE(parse_edit(R"({"edit":"separate","max_move":0})"));
   EXPECT_EQ(document.generations.size(), generations);
+}
+
+TEST(SeparateEdit, can_be_followed_by_relaxing_what_moved_without_a_contact) {
+  // A row of the upper sheet is uneven, so that there is something to relax.
+  const auto sheets = [] {
+    Model model = close_sheets(0.4);
+    for (const std::int64_t id : {1006, 1011, 1016}) {
+      const std::size_t node = model.find_node(id).value;
+      model.positions.set(node, model.positions[node] + Vec3(0, 0, 0.01));
+    }
+    for (const std::int64_t id : {1007, 1012, 1017}) {
+      const std::size_t node = model.find_node(id).value;
+      model.positions.set(node, model.positions[node] + Vec3(2, 0, 0));
+    }
+    return make_document(std::move(model));
+  };
+  Document alone = sheets(), followed = sheets();
+  must_apply(alone, R"({"edit":"separate"})");
+  must_apply(followed, R"({"edit":"select","expr":"3,1013"})");
+  const EditReport report = must_apply(followed, R"({"edit":"separate","follow":"relax"})");
+  EXPECT_EQ(report.separated->regions_removed, 1u);
+  EXPECT_THAT(report.notes, testing::Contains(HasSubstr("relaxed: ")));
+  EXPECT_EQ(contacts(followed), 0u);
+  EXPECT_GT(place_of(alone, 1012).x() - place_of(followed, 1012).x(), 0.5) << "the row is evened out";
+  EXPECT_EQ(place_of(alone, 1).x(), place_of(followed, 1).x());
+  EXPECT_THAT(selected_ids(followed), ElementsAre(3, 1013));
+  must_apply(followed, R"({"edit":"undo"})");
+  EXPECT_EQ(place_of(followed, 1013).z(), 0.4);
 }
 
 TEST(SeparateEdit, finds_nothing_too_close_without_thickness) {
@@ -149,6 +178,25 @@ TEST(SeparateEdit, pushes_a_bead_of_the_sample_back_that_goes_through_its_neighb
   EXPECT_EQ(report.lost_connections, 0u);
   EXPECT_LE(document->current().counts.fail, failing);
   EXPECT_LT(contacts(*document), before);
+}
+
+TEST(SeparateEdit, can_be_followed_by_repairing_what_moved) {
+  const Folder folder;
+  ASSERT_TRUE(deck::write_sample(folder / "sample.k", 2000));
+  Result<Document> document = open(folder / "sample.k", {});
+  ASSERT_TRUE(document) << document.error().text();
+  must_apply(*document, R"({"edit":"select","expr":"5000104"})");
+  must_apply(*document, R"({"edit":"grow","rings":2})");
+  must_apply(*document, R"({"edit":"translate","by":[0.09,77.24,-0.02],"grab":5000104})");
+  const std::string separate = R"({"edit":"separate","at":[347,15,146],"joined":true)";
+  Document alone = *document;
+  must_apply(alone, separate + "}");
+  const EditReport report = must_apply(*document, separate + R"(,"follow":"repair"})");
+  EXPECT_EQ(report.separated->regions_removed, 1u) << why_left(report);
+  EXPECT_THAT(report.notes, testing::Contains(HasSubstr("repaired: ")));
+  EXPECT_LT(document->current().counts.fail, alone.current().counts.fail);
+  EXPECT_LE(contacts(*document), contacts(alone));
+  EXPECT_EQ(selected_ids(*document).size(), selected_ids(alone).size());
 }
 
 class SeparateDeckTest : public ::testing::Test {

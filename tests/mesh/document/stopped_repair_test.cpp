@@ -176,7 +176,7 @@ TEST(StoppedRepair, stop_at_is_an_object_with_both_fields) {
   EXPECT_EQ(refused(R"("stop_at":{"attempt":2,"steps":[7,0]})"), "accepted");
   EXPECT_THAT(refused(R"("stop_at":7)"), HasSubstr(R"("stop_at" must be an object like {"attempt": 1, "steps": [532]})"));
   EXPECT_THAT(refused(R"("stop_at":{"attempt":1})"), HasSubstr("steps"));
-  EXPECT_THAT(refused(R"("stop_at":{"attempt":6,"steps":[1]})"), HasSubstr("a whole number between 1 and 5"));
+  EXPECT_THAT(refused(R"("stop_at":{"attempt":1001,"steps":[1]})"), HasSubstr("a whole number between 1 and 1000"));
   EXPECT_THAT(refused(R"("stop_at":{"attempt":1,"steps":[-1]})"), HasSubstr("a list of 1 to 1000000 whole numbers"));
   EXPECT_THAT(refused(R"("on_cancel":"kep")"), HasSubstr("on_cancel"));
   EXPECT_THAT(refused(R"("on_cancel":"kep")"), HasSubstr("keep"));
