@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <utility>
@@ -25,20 +26,29 @@ namespace {
 constexpr int kMaxRounds = 30;
 /// How steeply displacements fall off, the narrowest first: the first that does no harm is taken.
 constexpr std::array kSlopes{0.3, 0.15, 0.08, 0.04, 0.02};
+/// Tried where the surroundings lose a weld or are pushed into another part: so they move less.
+constexpr std::array kSteepSlopes{0.6, 1.2, 2.4, std::numeric_limits<double>::infinity()};
 constexpr double kMaxExcess = 0.05;                    ///< of the target size: how much farther than needed a node may go
 constexpr double kMinCosOfWish = 0.17364817766693033;  ///< a wished direction within 80 degrees of the way out
 constexpr double kMissing = 1e-5;                      ///< of the least distance
 constexpr int kDigitsOfWhy = 3;
 
+/// Ways to try, the first that does no harm is taken.
+struct Manner {
+  bool each_its_own, by_nodes;
+};
+constexpr std::array<Manner, 4> kManners{{{false, false}, {false, true}, {true, false}, {true, true}}};
+
 /// One way to try.
 struct Attempt {
   double upper_share = 1;
+  bool by_nodes = false;      ///< each first as far as it must by itself; else triangle by triangle
   bool each_its_own = false;  ///< directions
   double slope = 0;
 };
 
 /// What may help where an attempt failed.
-enum class Fails : std::uint8_t { for_good, gentler_may_help, own_directions_may_help };
+enum class Fails : std::uint8_t { for_good, gentler_may_help, steeper_may_help, own_directions_may_help };
 
 struct Outcome {
   SeparatedModel state;  ///< without its contacts
@@ -59,18 +69,28 @@ class RegionSeparator {
     const std::vector<double> all_shares = shares();
     for (const double share : all_shares) {
       const bool is_first = share == all_shares.front();
-      bool own_may_help = true;
-      for (const bool each_its_own : {false, true}) {
+      bool own_may_help = false;
+      for (const auto& [each_its_own, by_nodes] : kManners) {
         if (each_its_own && (region_.perforation || wish_.direction || !own_may_help)) continue;
+        Fails fails_by = Fails::gentler_may_help;
+        const auto tried = [&](double slope) {
+          Outcome outcome = attempt({share, by_nodes, each_its_own, slope});
+          fails_by = outcome.fails_by;
+          return outcome;
+        };
         for (const double slope : kSlopes) {
           if (progress && !progress(fraction)) return fail(cancelled());
-          Outcome outcome = attempt({share, each_its_own, slope});
+          Outcome outcome = tried(slope);
           if (outcome.why.empty()) return outcome;
-          if (first.why.empty() || (is_first && !each_its_own)) first.why = outcome.why;
-          if (outcome.fails_by != Fails::gentler_may_help) {
-            own_may_help = outcome.fails_by == Fails::own_directions_may_help;
-            break;
-          }
+          if (first.why.empty() || (is_first && !each_its_own && !by_nodes)) first.why = outcome.why;
+          if (fails_by != Fails::gentler_may_help) break;
+        }
+        own_may_help = own_may_help || fails_by == Fails::own_directions_may_help;
+        for (const double slope : kSteepSlopes) {
+          if (fails_by != Fails::steeper_may_help) break;
+          if (progress && !progress(fraction)) return fail(cancelled());
+          Outcome outcome = tried(slope);
+          if (outcome.why.empty()) return outcome;
         }
       }
     }
@@ -97,14 +117,18 @@ class RegionSeparator {
     SideLifts needed, lifts;
     outcome.state.model = before_.model;
     bool clear = false;
+    if (attempt.by_nodes) {
+      sides.add_missing_of_nodes(attempt.upper_share, needed);
+      outcome.why = why_not_lifted(needed, attempt.upper_share, sides, outcome.fails_by);
+      if (!outcome.why.empty()) return outcome;
+      lift(needed, attempt.slope, lifts, outcome);
+    }
     for (int round = 0; round < kMaxRounds && !clear; ++round) {
       clear = sides.add_missing(outcome.state.model, lifts, attempt.upper_share, needed) <= kMissing * sides.reach();
       if (clear) break;
       outcome.why = why_not_lifted(needed, attempt.upper_share, sides, outcome.fails_by);
       if (!outcome.why.empty()) return outcome;
-      lifts.upper = spread(needed.upper, attempt.slope);
-      lifts.lower = spread(needed.lower, attempt.slope);
-      put(lifts, outcome);
+      lift(needed, attempt.slope, lifts, outcome);
     }
     if (!clear) {
       outcome.why = "its sides don't get clear of each other";
@@ -115,14 +139,29 @@ class RegionSeparator {
     return outcome;
   }
 
+  void lift(const SideLifts& needed, double slope, SideLifts& lifts, Outcome& outcome) const {
+    lifts.upper = spread(needed.upper, slope);
+    lifts.lower = spread(needed.lower, slope);
+    put(lifts, outcome);
+  }
+
   void finish(const FacingSides& sides, Outcome& outcome) const {
+    if (input_.carry) {
+      const NodeSet carried = input_.carry(before_.model, outcome.moved, outcome.state.model);
+      outcome.moved.insert(outcome.moved.end(), carried.begin(), carried.end());
+      sort_unique(outcome.moved);
+    }
     outcome.state.tree = before_.tree;
     outcome.state.states = before_.states;
     outcome.state.reach = before_.reach;
     Harm harm = harm_of(input_, wish_, before_, outcome.state, outcome.moved, {sides.upper(), sides.lower()});
+    if (harm.why.empty() && input_.why_lost) {
+      harm.why = input_.why_lost(before_.model, outcome.state.model, outcome.moved);
+      harm.by_surroundings = !harm.why.empty();
+    }
     outcome.why = std::move(harm.why);
     outcome.at_moved = std::move(harm.at_moved);
-    outcome.fails_by = harm.to_shells ? Fails::gentler_may_help : Fails::for_good;
+    outcome.fails_by = harm.to_shells ? Fails::gentler_may_help : harm.by_surroundings ? Fails::steeper_may_help : Fails::for_good;
   }
 
   Lifts spread(const Lifts& needed, double slope) const {
@@ -158,7 +197,9 @@ class RegionSeparator {
     if (!why.empty()) return why;
     if (wish_.max_move && longest > *wish_.max_move) return "max_move is too small: it takes " + readable(longest, kDigitsOfWhy);
     if (excess > 0) fails_by = Fails::own_directions_may_help;
-    if (excess > 0) return "the way out is longer than the region is deep: a node would go " + readable(longest, kDigitsOfWhy);
+    if (excess > 0)
+      return "the way out is longer than the region is deep: a node would go " + readable(longest, kDigitsOfWhy) +
+             (sides.any_stands() ? ", as shells stand more than 60 degrees steep on it" : "");
     return {};
   }
 
@@ -260,7 +301,7 @@ bool leave_harmful(const SeparatedModel& before, const Contacts& after, double g
 /// The greatest depth of what is left of the regions, as the model is now.
 double depth_left(const SeparationInput& input, const SeparationWish& wish, const SeparatedModel& state, const FoundContacts& found,
                   const std::vector<MeantRegion>& regions) {
-  const SeparationInput now{state.model, state.tree, input.thickness, input.criteria, state.states, input.joints, input.why_stays};
+  const SeparationInput now{state.model, state.tree, input.thickness, input.criteria, state.states, input.joints, input.why_stays, {}, {}};
   SeparationWish anywhere = wish;
   anywhere.at.reset();
   ShellSet meant;

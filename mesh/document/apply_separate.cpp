@@ -17,7 +17,7 @@
 #include "mesh/document/contacts.h"
 #include "mesh/document/deck_relations.h"
 #include "mesh/document/dependents_report.h"
-#include "mesh/document/joined_sheets.h"
+#include "mesh/document/kept_welds.h"
 #include "mesh/document/pins.h"
 #include "mesh/select/expression.h"
 
@@ -31,7 +31,6 @@ constexpr int kNoteDigits = 3;
 /// As predicates of nodes, in the order of Stays.
 constexpr std::array<std::string_view, 5> kStayAsPredicates{"are locked", "are held by the deck", "have elements other than shells",
                                                             "are joined by cards", "are beside mid-side nodes that can't follow"};
-constexpr std::string_view kCarry = "carry welds or ties";
 
 Result<void> refuse_unsound(const Separate& edit) {
   const auto sound = [](double value) { return std::isfinite(value) && value >= 0; };
@@ -54,26 +53,10 @@ Result<std::optional<ShellSet>> shells_named(const Generation& generation, const
   return std::optional<ShellSet>(std::move(chosen->shells));
 }
 
-/// What each node may do.
-class Movable {
- public:
-  explicit Movable(const Generation& generation) : pins_(generation), carries_(generation.model.node_count(), 0) {
-    for (const NodeOnSheet& each : generation.relations->dependents.on_sheets) {
-      carries_[each.node.value] = 1;
-      if (!generation.model.is_removed(each.shell))
-        for (const NodeIndex corner : generation.model.shell(each.shell).node) carries_[corner.value] = 1;
-    }
-  }
-  std::string_view why_stays(NodeIndex node) const {
-    const Stays why = pins_.of(node);
-    if (why != Stays::goes) return kStayAsPredicates[static_cast<std::size_t>(why)];
-    return carries_[node.value] != 0 ? kCarry : std::string_view();
-  }
-
- private:
-  Pins pins_;
-  std::vector<std::uint8_t> carries_;
-};
+std::string_view why_stays(const Pins& pins, NodeIndex node) {
+  const Stays why = pins.of(node);
+  return why == Stays::goes ? std::string_view() : kStayAsPredicates[static_cast<std::size_t>(why)];
+}
 
 std::string part_reference(const Model& model, PartIndex part) {
   return part.valid() ? "part:" + std::to_string((*model.parts)[part.value].id) : "";
@@ -139,13 +122,22 @@ Result<void> apply_edit(const Document& document, const Separate& edit, Generati
   wish.direction = edit.direction;
   wish.max_move = edit.max_move;
   wish.allowed_depth = edit.allowed_depth;
-  const Movable movable(current);
+  const KeptWelds welds(current);
+  const Pins pins(current, &welds);
   const spatial::BoxTree tree(current.model);
   const contact::ContactThickness thickness = contact_thickness(current);
-  const std::vector<connections::JoinedSheets::Pair> pairs = joints(current);
-  const Result<contact::Separation> done = contact::separate({current.model, tree, thickness, judged_by(document), current.quality, pairs,
-                                                              [&](NodeIndex node) { return movable.why_stays(node); }},
-                                                             wish, progress);
+  const std::vector<connections::JoinedSheets::Pair> pairs = welds.pairs();
+  const contact::SeparationInput input{
+      current.model,
+      tree,
+      thickness,
+      judged_by(document),
+      current.quality,
+      pairs,
+      [&](NodeIndex node) { return why_stays(pins, node); },
+      [&](const Model& before, const NodeSet& moved, Model& after) { return welds.carry(before, moved, after); },
+      [&](const Model& before, const Model& after, const NodeSet& moved) { return welds.why_lost(before, after, moved); }};
+  const Result<contact::Separation> done = contact::separate(input, wish, progress);
   if (!done) return fail(done.error());
   say_what(current.model, *done, report);
   if (!done->nodes.empty()) put_positions(document, *done, next, report);
