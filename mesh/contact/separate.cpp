@@ -17,6 +17,7 @@
 #include "mesh/contact/separation_check.h"
 #include "mesh/contact/sort_unique.h"
 #include "mesh/contact/spread_lifts.h"
+#include "mesh/contact/try_regions.h"
 #include "mesh/model/adjacency.h"
 
 namespace prismesh::mesh::contact {
@@ -318,40 +319,76 @@ double depth_left(const SeparationInput& input, const SeparationWish& wish, cons
   return depth;
 }
 
+SeparatedModel state_before(const SeparationInput& input, const SeparationWish& wish, const FoundContacts& found) {
+  const auto& thickness = input.thickness.of_shell;
+  const double thickest = thickness.empty() ? 0 : *std::max_element(thickness.begin(), thickness.end());
+  return {input.model, input.tree, input.states, by_pair(found, wish.gap), wish.gap + thickest};
+}
+
+/// What became of the regions, and the contacts that may differ or are of them.
+struct SeparatedRegions {
+  Pass pass;
+  FoundContacts found;
+};
+
+/// Until no change is left that makes new contacts farther away.
+Result<SeparatedRegions> separate_regions(const SeparationInput& input, const SeparationWish& wish, const SeparatedModel& before,
+                                          std::vector<MeantRegion> regions, const Progress& progress) {
+  ShellSet meant;
+  for (const MeantRegion& region : regions)
+    for (const ShellSet& shells : region.shells) meant.insert(meant.end(), shells.begin(), shells.end());
+  for (;;) {
+    Result<Pass> pass = separate_all(input, wish, before, regions, progress);
+    if (!pass) return fail(pass.error());
+    ShellSet moved;
+    for (const ShellSet& touched : pass->touched) moved.insert(moved.end(), touched.begin(), touched.end());
+    sort_unique(moved);
+    FoundContacts found = find_contacts_about(input, wish, before, pass->state, moved, meant);
+    if (!leave_harmful(before, by_pair(found, wish.gap), wish.gap, *pass, regions))
+      return SeparatedRegions{std::move(*pass), std::move(found)};
+  }
+}
+
 }  // namespace
 
 Result<Separation> separate(const SeparationInput& input, const SeparationWish& wish, const Progress& progress) {
-  FoundContacts found = find_contacts(input, wish, input.model, input.tree);
-  std::vector<MeantRegion> regions = find_meant_regions(input, wish, found);
+  const FoundContacts found = find_contacts(input, wish, input.model, input.tree);
+  const std::vector<MeantRegion> regions = find_meant_regions(input, wish, found);
   Separation done;
   done.regions_before = regions.size();
   for (const MeantRegion& region : regions) done.depth_before = std::max(done.depth_before, region.depth.value_or(0));
   if (regions.empty()) return done;
-  const auto& thickness = input.thickness.of_shell;
-  const SeparatedModel before{input.model, input.tree, input.states, by_pair(found, wish.gap),
-                              wish.gap + *std::max_element(thickness.begin(), thickness.end())};
-  Result<Pass> pass = separate_all(input, wish, before, regions, progress);
-  ShellSet meant;
-  for (const MeantRegion& region : regions)
-    for (const ShellSet& shells : region.shells) meant.insert(meant.end(), shells.begin(), shells.end());
-  while (pass) {
-    ShellSet moved;
-    for (const ShellSet& touched : pass->touched) moved.insert(moved.end(), touched.begin(), touched.end());
-    sort_unique(moved);
-    found = find_contacts_about(input, wish, before, pass->state, moved, meant);
-    if (!leave_harmful(before, by_pair(found, wish.gap), wish.gap, *pass, regions)) break;
-    pass = separate_all(input, wish, before, regions, progress);
-  }
-  if (!pass) return fail(pass.error());
+  const Result<SeparatedRegions> separated = separate_regions(input, wish, state_before(input, wish, found), regions, progress);
+  if (!separated) return fail(separated.error());
+  const Pass& pass = separated->pass;
   for (std::size_t i = 0; i < regions.size(); ++i)
-    if (!pass->why[i].empty()) done.left.push_back({regions[i].part[0], regions[i].part[1], pass->why[i]});
-  done.nodes = moved_nodes(input.model, pass->state.model);
+    if (!pass.why[i].empty()) done.left.push_back({regions[i].part[0], regions[i].part[1], pass.why[i]});
+  done.nodes = moved_nodes(input.model, pass.state.model);
   for (const NodeIndex node : done.nodes) {
-    done.positions.push_back(pass->state.model.position(node));
+    done.positions.push_back(pass.state.model.position(node));
     done.largest_move = std::max(done.largest_move, (done.positions.back() - input.model.position(node)).norm());
   }
-  done.depth_after = done.nodes.empty() ? done.depth_before : depth_left(input, wish, pass->state, found, regions);
+  done.depth_after = done.nodes.empty() ? done.depth_before : depth_left(input, wish, pass.state, separated->found, regions);
   return done;
+}
+
+Result<std::vector<RegionTrial>> try_regions(const SeparationInput& input, const SeparationWish& wish, std::size_t limit,
+                                             const Progress& progress) {
+  const FoundContacts found = find_contacts(input, wish, input.model, input.tree);
+  const std::vector<MeantRegion> regions = find_meant_regions(input, wish, found);
+  const SeparatedModel before = state_before(input, wish, found);
+  std::vector<RegionTrial> trials;
+  for (std::size_t i = 0, tried = 0; i < regions.size(); ++i) {
+    const double fraction = static_cast<double>(i) / static_cast<double>(regions.size());
+    if (regions[i].why_left.empty() && tried++ >= limit) continue;
+    RegionTrial& trial = trials.emplace_back(RegionTrial{regions[i].perforation.has_value(), regions[i].shells, regions[i].why_left});
+    if (!trial.why.empty()) continue;
+    const Result<SeparatedRegions> separated =
+        separate_regions(input, wish, before, {regions[i]}, [&](double) { return !progress || progress(fraction); });
+    if (!separated) return fail(separated.error());
+    trial.why = separated->pass.why.front();
+  }
+  return trials;
 }
 
 }  // namespace prismesh::mesh::contact

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <iterator>
@@ -17,8 +16,8 @@
 #include "mesh/document/contacts.h"
 #include "mesh/document/deck_relations.h"
 #include "mesh/document/dependents_report.h"
-#include "mesh/document/kept_welds.h"
 #include "mesh/document/pins.h"
+#include "mesh/document/separation_setting.h"
 #include "mesh/select/expression.h"
 
 namespace prismesh::mesh::document {
@@ -27,10 +26,6 @@ namespace {
 
 constexpr std::size_t kMaxNotesOfLeft = 20;
 constexpr int kNoteDigits = 3;
-
-/// As predicates of nodes, in the order of Stays.
-constexpr std::array<std::string_view, 5> kStayAsPredicates{"are locked", "are held by the deck", "have elements other than shells",
-                                                            "are joined by cards", "are beside mid-side nodes that can't follow"};
 
 Result<void> refuse_unsound(const Separate& edit) {
   const auto sound = [](double value) { return std::isfinite(value) && value >= 0; };
@@ -51,11 +46,6 @@ Result<std::optional<ShellSet>> shells_named(const Generation& generation, const
   if (!chosen) return fail("", "separate: \"" + std::string(field) + "\": " + chosen.error().text());
   std::sort(chosen->shells.begin(), chosen->shells.end());
   return std::optional<ShellSet>(std::move(chosen->shells));
-}
-
-std::string_view why_stays(const Pins& pins, NodeIndex node) {
-  const Stays why = pins.of(node);
-  return why == Stays::goes ? std::string_view() : kStayAsPredicates[static_cast<std::size_t>(why)];
 }
 
 std::string part_reference(const Model& model, PartIndex part) {
@@ -122,22 +112,8 @@ Result<void> apply_edit(const Document& document, const Separate& edit, Generati
   wish.direction = edit.direction;
   wish.max_move = edit.max_move;
   wish.allowed_depth = edit.allowed_depth;
-  const KeptWelds welds(current);
-  const Pins pins(current, &welds);
-  const spatial::BoxTree tree(current.model);
-  const contact::ContactThickness thickness = contact_thickness(current);
-  const std::vector<connections::JoinedSheets::Pair> pairs = welds.pairs();
-  const contact::SeparationInput input{
-      current.model,
-      tree,
-      thickness,
-      judged_by(document),
-      current.quality,
-      pairs,
-      [&](NodeIndex node) { return why_stays(pins, node); },
-      [&](const Model& before, const NodeSet& moved, Model& after) { return welds.carry(before, moved, after); },
-      [&](const Model& before, const Model& after, const NodeSet& moved) { return welds.why_lost(before, after, moved); }};
-  const Result<contact::Separation> done = contact::separate(input, wish, progress);
+  const SeparationSetting setting(document, contact_thickness(current));
+  const Result<contact::Separation> done = contact::separate(setting.input(), wish, progress);
   if (!done) return fail(done.error());
   say_what(current.model, *done, report);
   if (!done->nodes.empty()) put_positions(document, *done, next, report);

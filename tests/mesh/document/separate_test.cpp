@@ -1,6 +1,7 @@
 // The edit that moves shells apart: what of the document it heeds, and that it is an edit like the others. The method is tested with
 // mesh/contact.
 #include <cstdio>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 
 #include "mesh/contact/find_penetrations.h"
 #include "mesh/deck/sample.h"
+#include "mesh/document/clear_regions.h"
 #include "mesh/document/joined_sheets.h"
 #include "tests/mesh/document/document_fixture.h"
 #include "tests/mesh/document/journal_session.h"
@@ -353,6 +355,59 @@ TEST_F(SeparateDeckTest, gives_the_same_with_any_number_of_threads_and_from_the_
   ASSERT_TRUE(Journal::recover(session.path, recovered));
   expect_same(recovered, session.after.back());
   expect_same(recovered, after[0]);
+}
+
+/// Three regions: of parts 1 and 2, which a weld joins; 3 and 4; 5 and 6, which go through each other half.
+DeckText three_places() {
+  DeckText deck;
+  deck.sheet(1, 1, 0);
+  deck.sheet(2, 101, 0.6);
+  deck.sheet(3, 201, 50);
+  deck.sheet(4, 301, 50.7);
+  deck.part(5), deck.part(6);
+  for (int n = 0; n < 4; ++n) {
+    deck.node(401 + n, n == 1 || n == 2 ? 10 : 0, n > 1 ? 10 : 0, 100);
+    deck.node(411 + n, n == 1 || n == 2 ? 15 : 5, 5, n > 1 ? 105 : 95);
+  }
+  deck.shell(401, 5, 401);
+  deck.shell(411, 6, 411);
+  deck.cards("*CONSTRAINED_SPOTWELD\n        13       113\n");
+  return deck;
+}
+
+TEST_F(SeparateDeckTest, says_beforehand_what_it_would_remove) {
+  Document document = opened(three_places());
+  const auto found = [&](const ContactWish& wish) {
+    ContactSearch search;
+    Result<Contacts> contacts = find_contacts(document.current(), search, wish);
+    EXPECT_TRUE(find_clear(document, wish, *contacts));
+    return contacts->regions;
+  };
+  const auto why_of = [&](const std::vector<ContactRegion>& regions) {
+    std::map<std::string, std::string> why;
+    for (const ContactRegion& region : regions) {
+      EXPECT_EQ(region.clear, region.why.empty());
+      why[region.a] = region.clear ? "clear" : region.why;
+    }
+    return why;
+  };
+  using Why = std::map<std::string, std::string>;
+  EXPECT_EQ(why_of(found({})), (Why{{"part:1", "clear"}, {"part:3", "clear"}, {"part:5", "half through: nothing is cut off"}}));
+  EXPECT_EQ(why_of(found({.select = "part:4 & 301-302"})), (Why{{"part:3", "clear"}}));
+  const auto far = why_of(found({.select = "part:1", .gap = 19.5}));
+  EXPECT_THAT(far.at("part:1"), HasSubstr("a weld would be lost: *CONSTRAINED_SPOTWELD"));
+  must_apply(document, R"({"edit":"lock","on":"1"})");
+  must_apply(document, R"({"edit":"lock","on":"3"})");
+  must_apply(document, R"({"edit":"lock","on":"4"})");
+  const std::vector<ContactRegion> locked = found({});
+  EXPECT_EQ(why_of(locked),
+            (Why{{"part:1", "clear"}, {"part:3", "nodes of part 3 are locked"}, {"part:5", "half through: nothing is cut off"}}));
+  for (const ContactRegion& region : locked) {
+    Document tried = document;
+    const EditReport report = must_apply(tried, R"({"edit":"separate","joined":true,"on":")" + region.a + R"("})");
+    EXPECT_EQ(report.separated->regions_removed == 1, region.clear) << region.a;
+    EXPECT_EQ(why_left(report), region.why);
+  }
 }
 
 TEST(SeparateEdit, comes_back_with_the_journal_and_replays_on_a_variant) {
