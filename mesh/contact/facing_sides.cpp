@@ -83,7 +83,7 @@ FacingSides::FacingSides(const SeparationInput& input, const SeparationWish& wis
 }
 
 double FacingSides::least(ShellIndex a, ShellIndex b) const {
-  const double mean = (input_.thickness.of_shell[a.value] + input_.thickness.of_shell[b.value]) / 2;
+  const double mean = input_.thickness.between(a, b);
   return std::max(mean + wish_.gap - wish_.allowed_depth, mean > 0 ? kMinShareOfThickness * mean : wish_.gap);
 }
 
