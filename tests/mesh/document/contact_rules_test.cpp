@@ -93,5 +93,84 @@ TEST_F(ContactRules, separating_moves_only_what_is_not_offset) {
   EXPECT_EQ(left.separated->regions_left.at(0).why, "nodes of part 1 are offset from the contact's surface");
 }
 
+/// The same plates in a Radioss deck, 1.25 apart, and these blocks.
+std::string radioss_plates(const std::string& blocks) {
+  const auto node = [](int id, double x, double y, double z) {
+    char line[80];
+    std::snprintf(line, sizeof line, "%10d%20.4f%20.4f%20.4f\n", id, x, y, z);
+    return std::string(line);
+  };
+  const std::string units = "                  Mg                  mm                   s\n";
+  const auto property = [](const std::string& id, const std::string& thickness) {
+    return "/PROP/SHELL/" + id + "\nsheet\n\n\n         1         0" + thickness + "\n";
+  };
+  return "#RADIOSS STARTER\n/BEGIN\nplates\n      2021         0\n" + units + units + "/UNIT/2\nmetres\n" +
+         "                  Mg                   m                   s\n/NODE\n" + node(1, 0, 0, 0) + node(2, 10, 0, 0) +
+         node(3, 10, 10, 0) + node(4, 0, 10, 0) + node(11, 2, 2, 1.25) + node(12, 8, 2, 1.25) + node(13, 8, 8, 1.25) +
+         node(14, 2, 8, 1.25) +
+         "/SHELL/1\n         1         1         2         3         4\n/SHELL/2\n         2        11        12        13        14\n" +
+         "/PART/1\nfloor\n         1         0\n/PART/2\nroof\n         2         0\n" + property("1", "                 1.0") +
+         property("2", "                 2.0") + blocks + "/END\n";
+}
+
+struct Gap {
+  int kind = 0;
+  std::string scale = "0", max = "0", mesh = "0", min = "0";
+};
+/// An interface with these sides.
+std::string interface(const std::string& keyword, int secondary, int main, const Gap& gap) {
+  const auto real = [](const std::string& text) { return std::string(20 - text.size(), ' ') + text; };
+  char sides[80];
+  std::snprintf(sides, sizeof sides, "%10d%10d%10d%10d%10d\n", secondary, main, 0, 0, gap.kind);
+  return keyword + "\nthe contact\n" + sides + real(gap.scale) + real(gap.max) + "\n" + real("0") + real("0") + real(gap.mesh) + "\n" +
+         real("0") + real("0") + real(gap.min) + "\n";
+}
+
+constexpr const char* kRadiossGroups =
+    "/SURF/PART/21\nfloor\n         1\n/SURF/PART/22\nroof\n         2\n/GRNOD/PART/32\nroof\n         2\n/GRNOD/NODE/31\nfloor\n"
+    "         1         2         3         4\n/SURF/SURF/23\nboth\n        21        22\n/SURF/SURF/24\nboth but the roof\n        23     "
+    "  -22\n"
+    "/GRNOD/GRNOD/33\nthe roof's\n        32\n/SURF/BOX/25\nnot known\n        21\n";
+
+TEST_F(ContactRules, radioss_gaps_are_constant_or_between_limits) {
+  const auto deck = [&](const Gap& gap) {
+    return opened("plates_0000.rad", radioss_plates(kRadiossGroups + interface("/INTER/TYPE7/5", 32, 21, gap)));
+  };
+  EXPECT_NEAR(depth(deck({1, "0", "0", "0", "1.4"})), 0.25, 1e-12) << "half of both thicknesses";
+  EXPECT_NEAR(depth(deck({1, "0", "0", "0", "2.0"})), 0.75, 1e-12) << "at least Gapmin";
+  EXPECT_NEAR(depth(deck({1, "1.2", "1.4", "0", "0.1"})), 0.25, 1e-12) << "neither scale nor max count for Igap = 1";
+  EXPECT_NEAR(depth(deck({2, "1.2", "0", "0", "0.1"})), 0.55, 1e-12);
+  EXPECT_NEAR(depth(deck({2, "0", "1.4", "0", "0.1"})), 0.15, 1e-12) << "at most Gapmax";
+  EXPECT_NEAR(depth(deck({3, "0", "0", "0.09", "0.1"})), 0.19, 1e-12) << "0.09 of 10 and 6";
+  EXPECT_NEAR(depth(deck({3, "0", "0", "0", "0.1"})), 0.25, 1e-12);
+  EXPECT_EQ(depth(deck({0, "0", "0", "0", "0.5"})), -1) << "constant";
+  EXPECT_NEAR(depth(deck({0, "0", "0", "0", "1.3"})), 0.05, 1e-12);
+  EXPECT_NEAR(depth(deck({1000, "0", "0", "0", "1.3"})), 0.05, 1e-12);
+  EXPECT_EQ(depth(deck({0, "0", "0", "0", "0"})), -1) << "the main surface's thickness: 1";
+  EXPECT_NEAR(depth(deck({0, "0", "0", "0", "1.3"}), {{}, 0, {}, false}), 0.25, 1e-12) << "by sections";
+}
+
+TEST_F(ContactRules, radioss_interfaces_know_their_sides) {
+  const Gap by_thickness{1, "0", "0", "0", "2.0"};
+  const auto contact = [&](const std::string& blocks) {
+    const std::vector<ContactRegion> found = regions(opened("plates_0000.rad", radioss_plates(kRadiossGroups + blocks)));
+    return found.size() == 1 ? found[0].contact : std::to_string(found.size()) + " regions";
+  };
+  const std::string seen = "INTER/TYPE7 5 the contact";
+  EXPECT_EQ(contact(interface("/INTER/TYPE7/5", 32, 21, by_thickness)), seen);
+  EXPECT_EQ(contact(interface("/INTER/TYPE7/5", 33, 21, by_thickness)), seen);
+  EXPECT_EQ(contact(interface("/INTER/TYPE7/5", 31, 22, by_thickness)), seen);
+  EXPECT_EQ(contact(interface("/INTER/TYPE7/5", 0, 23, by_thickness)), seen) << "with itself";
+  EXPECT_EQ(contact(interface("/INTER/TYPE7/5", 31, 24, by_thickness)), "") << "without the roof";
+  EXPECT_EQ(contact(interface("/INTER/TYPE7/5", 32, 25, by_thickness)), "") << "a side that isn't known";
+  EXPECT_EQ(contact(interface("/INTER/TYPE19/5", 22, 21, by_thickness)), "INTER/TYPE19 5 the contact");
+  EXPECT_EQ(contact(interface("/INTER/TYPE2/5", 32, 21, by_thickness)), "");
+  const Document metres =
+      opened("plates_0000.rad", radioss_plates(kRadiossGroups + interface("/INTER/TYPE7/5/2", 32, 21, {0, "0", "0", "0", "0.0014"})));
+  EXPECT_NEAR(depth(metres), 0.15, 1e-12);
+  const Document thick = opened("plates_0000.rad", radioss_plates(kRadiossGroups + interface("/INTER/TYPE7/5", 31, 22, {})));
+  EXPECT_NEAR(depth(thick), 0.75, 1e-12) << "the main surface's thickness: 2";
+}
+
 }  // namespace
 }  // namespace prismesh::mesh::document
