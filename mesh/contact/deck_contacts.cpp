@@ -210,7 +210,8 @@ double DeckContacts::thickness_in(const ContactCard& card, const ContactSide& si
 
 ContactThickness DeckContacts::thickness() const {
   ContactThickness thickness = section_thickness(model_);
-  if (empty()) return thickness;
+  const bool offset_all = cards_.offsets == ContactOffsets::of_every_shell;
+  if (empty() && !offset_all) return thickness;
   const std::vector<double> own = thickness.of_shell;
   std::vector<std::uint8_t> seen(model_.shell_count(), 0);
   std::vector<Sides> all = sides_;
@@ -249,7 +250,7 @@ ContactThickness DeckContacts::thickness() const {
   });
   if (cards_.offsets != ContactOffsets::ignored)
     for (std::size_t s = 0; s < model_.shell_count(); ++s)
-      if (seen[s] != 0) offset(ShellIndex(s), own[s], thickness);
+      if ((seen[s] != 0 || offset_all) && !model_.is_removed(ShellIndex(s))) offset(ShellIndex(s), own[s], thickness);
   take_contact_thickness(model_, seen, thickness);
   return thickness;
 }

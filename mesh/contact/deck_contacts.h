@@ -22,7 +22,7 @@ class DeckContacts {
 
   bool empty() const { return sides_.empty(); }
   /// The greatest thickness that a contact gives each shell, with its rules and offsets. Shells that no contact sees have that of their
-  /// section, and no offset.
+  /// section, and no offset unless every shell has.
   ContactThickness thickness() const;
   /// The first contact, in the deck's order, that keeps the shells apart; null: none does.
   const ContactCard* between(ShellIndex a, ShellIndex b) const;

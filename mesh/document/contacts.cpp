@@ -159,7 +159,8 @@ std::shared_ptr<const contact::ContactThickness> ContactSearch::section_thicknes
 }
 
 std::shared_ptr<const contact::ContactThickness> ContactSearch::thickness(const Generation& generation) {
-  if (generation.relations->deck->contacts.cards.empty()) return section_thickness(generation.model);
+  const ContactCards& contacts = generation.relations->deck->contacts;
+  if (contacts.cards.empty() && contacts.offsets == ContactOffsets::ignored) return section_thickness(generation.model);
   return std::make_shared<const contact::ContactThickness>(contact_thickness(generation));
 }
 

@@ -64,9 +64,10 @@ struct PartContact {
 
 /// Whether contact surfaces lie where sections offset them from the nodes.
 enum class ContactOffsets : std::uint8_t {
-  ignored,     ///< they go through the nodes
-  of_shell,    ///< the offset is a share of the shell's own thickness
-  of_contact,  ///< of its thickness in the contact
+  ignored,         ///< they go through the nodes
+  of_shell,        ///< the offset is a share of the shell's own thickness
+  of_contact,      ///< of its thickness in the contact
+  of_every_shell,  ///< of its own thickness, whether or not a contact that is read sees it
 };
 
 struct ContactCards {

@@ -172,5 +172,25 @@ TEST_F(ContactRules, radioss_interfaces_know_their_sides) {
   EXPECT_NEAR(depth(thick), 0.75, 1e-12) << "the main surface's thickness: 2";
 }
 
+/// The same plates in an Abaqus deck, 1.25 apart; parameters of the lower one's section.
+std::string abaqus_plates(const std::string& parameters) {
+  return "*NODE\n1, 0, 0, 0\n2, 10, 0, 0\n3, 10, 10, 0\n4, 0, 10, 0\n11, 2, 2, 1.25\n12, 8, 2, 1.25\n13, 8, 8, 1.25\n14, 2, 8, 1.25\n"
+         "*ELEMENT, TYPE=S4, ELSET=FLOOR\n1, 1, 2, 3, 4\n*ELEMENT, TYPE=S4, ELSET=ROOF\n2, 11, 12, 13, 14\n"
+         "*MATERIAL, NAME=STEEL\n*ELASTIC\n210000., 0.3\n*SHELL SECTION, ELSET=FLOOR, MATERIAL=STEEL" +
+         parameters + "\n1.0, 5\n*SHELL SECTION, ELSET=ROOF, MATERIAL=STEEL\n2.0, 5\n";
+}
+
+TEST_F(ContactRules, abaqus_offsets_of_sections_move_the_surface) {
+  const auto deck = [&](const char* parameters) { return opened("plates.inp", abaqus_plates(parameters)); };
+  EXPECT_NEAR(depth(deck("")), 0.25, 1e-12);
+  EXPECT_EQ(depth(deck(", OFFSET=SPOS")), -1) << "the nodes are the top: 1.75 apart";
+  EXPECT_NEAR(depth(deck(", OFFSET=SNEG")), 0.75, 1e-12) << "the nodes are the bottom";
+  EXPECT_NEAR(depth(deck(", OFFSET=-0.25")), 0.5, 1e-12);
+  EXPECT_NEAR(depth(deck(", offset = sneg")), 0.75, 1e-12);
+  EXPECT_NEAR(depth(deck(", OFFSET=SOME_DISTRIBUTION")), 0.25, 1e-12);
+  EXPECT_NEAR(depth(deck(", OFFSET=SNEG"), {{}, 0, {}, false}), 0.25, 1e-12) << "by sections there is no offset";
+  EXPECT_EQ(regions(deck(", OFFSET=SNEG")).at(0).thickness_from, "section");
+}
+
 }  // namespace
 }  // namespace prismesh::mesh::document
