@@ -34,17 +34,18 @@ constexpr double kMinCosOfWish = 0.17364817766693033;  ///< a wished direction w
 constexpr double kMissing = 1e-5;                      ///< of the least distance
 constexpr int kDigitsOfWhy = 3;
 
-/// Ways to try, the first that does no harm is taken.
+/// How nodes are moved.
 struct Manner {
-  bool each_its_own, by_nodes;
+  bool each_its_own = false;  ///< directions
+  bool by_nodes = false;      ///< each first as far as it must by itself; else triangle by triangle
 };
+/// The first that does no harm is taken.
 constexpr std::array<Manner, 4> kManners{{{false, false}, {false, true}, {true, false}, {true, true}}};
 
 /// One way to try.
 struct Attempt {
   double upper_share = 1;
-  bool by_nodes = false;      ///< each first as far as it must by itself; else triangle by triangle
-  bool each_its_own = false;  ///< directions
+  Manner manner;
   double slope = 0;
 };
 
@@ -71,34 +72,39 @@ class RegionSeparator {
     for (const double share : all_shares) {
       const bool is_first = share == all_shares.front();
       bool own_may_help = false;
-      for (const auto& [each_its_own, by_nodes] : kManners) {
-        if (each_its_own && (region_.perforation || wish_.direction || !own_may_help)) continue;
-        Fails fails_by = Fails::gentler_may_help;
-        const auto tried = [&](double slope) {
-          Outcome outcome = attempt({share, by_nodes, each_its_own, slope});
-          fails_by = outcome.fails_by;
-          return outcome;
-        };
-        for (const double slope : kSlopes) {
-          if (progress && !progress(fraction)) return fail(cancelled());
-          Outcome outcome = tried(slope);
-          if (outcome.why.empty()) return outcome;
-          if (first.why.empty() || (is_first && !each_its_own && !by_nodes)) first.why = outcome.why;
-          if (fails_by != Fails::gentler_may_help) break;
-        }
-        own_may_help = own_may_help || fails_by == Fails::own_directions_may_help;
-        for (const double slope : kSteepSlopes) {
-          if (fails_by != Fails::steeper_may_help) break;
-          if (progress && !progress(fraction)) return fail(cancelled());
-          Outcome outcome = tried(slope);
-          if (outcome.why.empty()) return outcome;
-        }
+      for (const Manner& manner : kManners) {
+        if (manner.each_its_own && (region_.perforation || wish_.direction || !own_may_help)) continue;
+        Result<Outcome> outcome = try_slopes(share, manner, progress, fraction);
+        if (!outcome || outcome->why.empty()) return outcome;
+        own_may_help = own_may_help || outcome->fails_by == Fails::own_directions_may_help;
+        if (first.why.empty() || (is_first && !manner.each_its_own && !manner.by_nodes)) first.why = outcome->why;
       }
     }
     return first;
   }
 
  private:
+  /// The first slope that does no harm; if none, the gentlest but for those that are steeper than usual.
+  Result<Outcome> try_slopes(double share, const Manner& manner, const Progress& progress, double fraction) const {
+    Outcome gentlest;
+    gentlest.fails_by = Fails::gentler_may_help;
+    for (const double slope : kSlopes) {
+      if (gentlest.fails_by != Fails::gentler_may_help) break;
+      if (progress && !progress(fraction)) return fail(cancelled());
+      gentlest = attempt({share, manner, slope});
+      if (gentlest.why.empty()) return gentlest;
+    }
+    Fails fails_by = gentlest.fails_by;
+    for (const double slope : kSteepSlopes) {
+      if (fails_by != Fails::steeper_may_help) break;
+      if (progress && !progress(fraction)) return fail(cancelled());
+      Outcome outcome = attempt({share, manner, slope});
+      if (outcome.why.empty()) return outcome;
+      fails_by = outcome.fails_by;
+    }
+    return gentlest;
+  }
+
   std::vector<double> shares() const {
     const bool upper = region_.may_move[region_.upper], lower = region_.may_move[region_.lower()];
     std::vector<double> shares;
@@ -110,7 +116,7 @@ class RegionSeparator {
 
   Outcome attempt(const Attempt& attempt) const {
     Outcome outcome;
-    FacingSides sides(input_, wish_, before_.model, before_.tree, region_, attempt.each_its_own);
+    FacingSides sides(input_, wish_, before_.model, before_.tree, region_, attempt.manner.each_its_own);
     if (sides.cos_of_wish() < kMinCosOfWish) {
       outcome.why = "the direction runs along the shells there";
       return outcome;
@@ -118,7 +124,7 @@ class RegionSeparator {
     SideLifts needed, lifts;
     outcome.state.model = before_.model;
     bool clear = false;
-    if (attempt.by_nodes) {
+    if (attempt.manner.by_nodes) {
       sides.add_missing_of_nodes(attempt.upper_share, needed);
       outcome.why = why_not_lifted(needed, attempt.upper_share, sides, outcome.fails_by);
       if (!outcome.why.empty()) return outcome;

@@ -12,6 +12,7 @@ namespace prismesh::mesh::deck::radioss {
 namespace {
 
 constexpr std::size_t kMaxFieldsOfALine = 10;
+constexpr int kMaxDepth = 64;       ///< of groups in groups
 constexpr double kMeshShare = 0.4;  ///< %mesh_size where it is 0
 
 bool is_group(std::string_view word) {
@@ -75,20 +76,19 @@ void ContactReader::take(const Block& block, const Keyword& keyword, const DeckT
     groups_.try_emplace({std::string(word), keyword.number(0) + tables.contexts[block.context].added.set}, Taken{&block, keyword});
 }
 
-/// False: what is in it isn't known. `within`: the groups that name it.
-bool ContactReader::add_members(const GroupName& name, const DeckTables& tables, bool away, std::vector<GroupName>& within,
-                                ContactSide& side) const {
+/// False: what is in it isn't known.
+bool ContactReader::add_members(const GroupName& name, const DeckTables& tables, bool away, Followed& followed, ContactSide& side) const {
   const auto group = groups_.find(name);
   if (group == groups_.end()) return false;
-  if (std::find(within.begin(), within.end(), name) != within.end()) return true;
-  within.push_back(name);
-  const bool known = add_members_of(group->second, tables, away, within, side);
-  within.pop_back();
+  if (!followed.groups.emplace(name, away).second) return true;
+  if (followed.depth >= kMaxDepth) return false;
+  ++followed.depth;
+  const bool known = add_members_of(group->second, tables, away, followed, side);
+  --followed.depth;
   return known;
 }
 
-bool ContactReader::add_members_of(const Taken& group, const DeckTables& tables, bool away, std::vector<GroupName>& within,
-                                   ContactSide& side) const {
+bool ContactReader::add_members_of(const Taken& group, const DeckTables& tables, bool away, Followed& followed, ContactSide& side) const {
   const IdOffsets& added = tables.contexts[group.block->context].added;
   const std::string_view kind = group.keyword.word(1);
   ContactLines lines(*group.block, tables);
@@ -113,7 +113,7 @@ bool ContactReader::add_members_of(const Taken& group, const DeckTables& tables,
         if (id == 0) continue;
         if (named)
           add(*named, std::abs(id), std::abs(id), 1, id < 0);
-        else if (!add_members({std::string(kind), std::abs(id) + added.set}, tables, (id < 0) != away, within, side))
+        else if (!add_members({std::string(kind), std::abs(id) + added.set}, tables, (id < 0) != away, followed, side))
           return false;
       }
     }
@@ -150,13 +150,13 @@ std::optional<ContactCard> ContactReader::read(const Taken& interface, const Dec
   if (!lines.next()) return std::nullopt;
   gap.min = lines.positive(5) * length;
   card.gap = gap;
-  std::vector<GroupName> within;
+  Followed of_surface, of_secondary;
   ContactSide of_main;
-  if (!add_members({"SURF", surface + context.added.set}, tables, false, within, of_main)) return std::nullopt;
+  if (!add_members({"SURF", surface + context.added.set}, tables, false, of_surface, of_main)) return std::nullopt;
   card.b = of_main;
   if (secondary == 0)
     card.a = of_main;
-  else if (!add_members({of_surfaces ? "SURF" : "GRNOD", secondary + context.added.set}, tables, false, within, card.a))
+  else if (!add_members({of_surfaces ? "SURF" : "GRNOD", secondary + context.added.set}, tables, false, of_secondary, card.a))
     return std::nullopt;
   return card;
 }

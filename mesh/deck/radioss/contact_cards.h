@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -28,8 +29,12 @@ class ContactReader {
     Keyword keyword;
   };
   using GroupName = std::pair<std::string, std::int64_t>;  ///< "GRNOD", 18
-  bool add_members(const GroupName& name, const DeckTables& tables, bool away, std::vector<GroupName>& within, ContactSide& side) const;
-  bool add_members_of(const Taken& group, const DeckTables& tables, bool away, std::vector<GroupName>& within, ContactSide& side) const;
+  struct Followed {
+    std::set<std::pair<GroupName, bool>> groups;  ///< with whether they are taken away: each is followed once
+    int depth = 0;
+  };
+  bool add_members(const GroupName& name, const DeckTables& tables, bool away, Followed& followed, ContactSide& side) const;
+  bool add_members_of(const Taken& group, const DeckTables& tables, bool away, Followed& followed, ContactSide& side) const;
   std::optional<ContactCard> read(const Taken& interface, const DeckTables& tables) const;
 
   std::vector<Taken> interfaces_;

@@ -165,6 +165,13 @@ TEST_F(ContactRules, radioss_interfaces_know_their_sides) {
   EXPECT_EQ(contact(interface("/INTER/TYPE7/5", 32, 25, by_thickness)), "") << "a side that isn't known";
   EXPECT_EQ(contact(interface("/INTER/TYPE19/5", 22, 21, by_thickness)), "INTER/TYPE19 5 the contact");
   EXPECT_EQ(contact(interface("/INTER/TYPE2/5", 32, 21, by_thickness)), "");
+  std::string tangled;
+  for (int group = 100; group < 140; ++group) {
+    std::string block = "/SURF/SURF/" + std::to_string(group) + "\nnames all\n        21\n";
+    for (int other = 100; other < 140; ++other) block += std::string(7, ' ') + std::to_string(other) + "\n";
+    tangled += block;
+  }
+  EXPECT_EQ(contact(tangled + interface("/INTER/TYPE7/5", 32, 117, by_thickness)), seen) << "groups that name each other";
   const Document metres =
       opened("plates_0000.rad", radioss_plates(kRadiossGroups + interface("/INTER/TYPE7/5/2", 32, 21, {0, "0", "0", "0", "0.0014"})));
   EXPECT_NEAR(depth(metres), 0.15, 1e-12);
