@@ -185,7 +185,7 @@ std::string penetrations_json(const mesh::document::Contacts& contacts) {
                {"worst", {region.worst_a, region.worst_b}},
                {"joined", region.joined},
                {"contact", region.contact.empty() ? Json(nullptr) : Json(region.contact)},
-               {"clear", false},
+               {"clear", region.clear},
                {"why", region.why},
                {"thickness_from", region.thickness_from}};
     if (region.kind == "perforation") entry["length"] = region.length;

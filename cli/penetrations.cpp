@@ -5,6 +5,7 @@
 #include "cli/json_output.h"
 #include "cli/open_deck.h"
 #include "cli/report_text.h"
+#include "mesh/document/clear_regions.h"
 #include "mesh/document/contacts.h"
 
 namespace prismesh::cli {
@@ -29,7 +30,8 @@ void print_region(std::ostream& out, const ContactRegion& region, std::string_vi
     out << "half through";
   out << ", at (" << region.at.transpose() << "): " << region.worst_a << ", " << region.worst_b;
   if (!region.contact.empty()) out << "; seen by " << printable(region.contact);
-  out << (region.joined ? "; joined there\n" : "\n");
+  if (region.joined) out << "; joined there";
+  out << (region.clear ? "; clear: separate removes it" : "; separate leaves it: " + printable(region.why)) << '\n';
 }
 
 }  // namespace
@@ -42,9 +44,10 @@ int penetrations(const PenetrationsOptions& options, const Common& common, const
   const Result<mesh::document::Document> document = open_deck(options.deck, common, context);
   if (!document) return refuse(document.error());
   mesh::document::ContactSearch search;
-  const Result<Contacts> found =
-      mesh::document::find_contacts(document->current(), search, {options.select, options.gap, options.thickness, options.by_contacts});
+  const mesh::document::ContactWish wish{options.select, options.gap, options.thickness, options.by_contacts};
+  Result<Contacts> found = mesh::document::find_contacts(document->current(), search, wish);
   if (!found) return refuse(found.error());
+  if (const Result<void> tried = mesh::document::find_clear(*document, wish, *found); !tried) return refuse(tried.error());
   const Contacts& contacts = *found;
   say_warnings(context, *document);
   if (common.json) {

@@ -18,7 +18,7 @@ namespace {
 /// A share of a shell's longest side. Shells count as equally close to an end if their distances differ by no more.
 constexpr double kEquallyClose = 1e-3;
 
-void add_elements(const Model& model, std::vector<NodeSet>& joints) {
+void add_elements(const Model& model, std::vector<Joint>& joints) {
   for (const ElementClass kind :
        {ElementClass::beam, ElementClass::solid, ElementClass::tshell, ElementClass::discrete, ElementClass::other}) {
     const auto& block = model.elements[static_cast<std::size_t>(kind)];
@@ -30,7 +30,7 @@ void add_elements(const Model& model, std::vector<NodeSet>& joints) {
       std::erase_if(ends, [](NodeIndex node) { return !node.valid(); });
       std::sort(ends.begin(), ends.end());
       ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
-      if (ends.size() > 1) joints.push_back(std::move(ends));
+      if (ends.size() > 1) joints.push_back({std::move(ends), kind, e});
     }
   }
 }
@@ -38,7 +38,7 @@ void add_elements(const Model& model, std::vector<NodeSet>& joints) {
 /// Finds the shells that an end of a joint lies on.
 class ShellsAtEnds {
  public:
-  ShellsAtEnds(const Model& model, OutOfSight out_of_sight, const std::vector<NodeSet>& joints)
+  ShellsAtEnds(const Model& model, OutOfSight out_of_sight, std::span<const Joint> joints)
       : model_(model), out_of_sight_(out_of_sight), sheets_(model, loose_ends(model, joints), out_of_sight) {}
 
   ShellSet of(NodeIndex node) const {
@@ -56,10 +56,10 @@ class ShellsAtEnds {
 
  private:
   /// The ends that are no nodes of shells.
-  static NodeSet loose_ends(const Model& model, const std::vector<NodeSet>& joints) {
+  static NodeSet loose_ends(const Model& model, std::span<const Joint> joints) {
     NodeSet loose;
-    for (const NodeSet& ends : joints)
-      for (const NodeIndex node : ends)
+    for (const Joint& joint : joints)
+      for (const NodeIndex node : joint.ends)
         if (model.adjacency->shells_of(node).empty()) loose.push_back(node);
     std::sort(loose.begin(), loose.end());
     loose.erase(std::unique(loose.begin(), loose.end()), loose.end());
@@ -103,16 +103,36 @@ void join_tied(const Model& model, const NodeOnSheet& tied, OutOfSight out_of_si
 
 }  // namespace
 
-std::vector<JoinedSheets::Pair> find_joints(const Model& model, std::span<const NodeSet> cards, OutOfSight out_of_sight,
-                                            std::span<const NodeOnSheet> on_sheets) {
-  std::vector<NodeSet> joints;
+std::vector<Joint> possible_joints(const Model& model, std::span<const NodeSet> cards) {
+  std::vector<Joint> joints;
   add_elements(model, joints);
-  joints.insert(joints.end(), cards.begin(), cards.end());
+  for (std::size_t c = 0; c < cards.size(); ++c)
+    if (cards[c].size() > 1) joints.push_back({cards[c], std::nullopt, c});
+  return joints;
+}
+
+std::vector<std::vector<JoinedSheets::Pair>> joined_by_each(const Model& model, std::span<const Joint> joints, OutOfSight out_of_sight) {
   const ShellsAtEnds shells_at_ends(model, out_of_sight, joints);
+  std::vector<std::vector<JoinedSheets::Pair>> pairs(joints.size());
+  for (std::size_t j = 0; j < joints.size(); ++j) join(model, joints[j].ends, shells_at_ends, pairs[j]);
+  return pairs;
+}
+
+std::vector<JoinedSheets::Pair> joined_by_ties(const Model& model, std::span<const NodeOnSheet> on_sheets, OutOfSight out_of_sight) {
   std::vector<JoinedSheets::Pair> pairs;
-  for (const NodeSet& ends : joints) join(model, ends, shells_at_ends, pairs);
   for (const NodeOnSheet& each : on_sheets)
     if (each.tied) join_tied(model, each, out_of_sight, pairs);
+  return pairs;
+}
+
+std::vector<JoinedSheets::Pair> find_joints(const Model& model, std::span<const NodeSet> cards, OutOfSight out_of_sight,
+                                            std::span<const NodeOnSheet> on_sheets) {
+  const std::vector<Joint> joints = possible_joints(model, cards);
+  const ShellsAtEnds shells_at_ends(model, out_of_sight, joints);
+  std::vector<JoinedSheets::Pair> pairs;
+  for (const Joint& joint : joints) join(model, joint.ends, shells_at_ends, pairs);
+  const std::vector<JoinedSheets::Pair> tied = joined_by_ties(model, on_sheets, out_of_sight);
+  pairs.insert(pairs.end(), tied.begin(), tied.end());
   return pairs;
 }
 

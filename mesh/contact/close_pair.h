@@ -34,7 +34,7 @@ class CloseTo {
   void leave_out_neighbours(std::vector<CloseShells>& found, std::size_t first) const;
 
  private:
-  double mean_thickness(ShellIndex other) const { return (thickness_.of_shell[shell_.value] + thickness_.of_shell[other.value]) / 2; }
+  double mean_thickness(ShellIndex other) const { return thickness_.between(shell_, other); }
   std::optional<CloseShells> pair(ShellIndex other, double mean_thickness, double reach);
 
   const Model& model_;

@@ -1,5 +1,6 @@
 #include "mesh/contact/contact_thickness.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 
@@ -41,6 +42,13 @@ std::string_view name(ThicknessFrom from) {
     case ThicknessFrom::contact: return "contact";
   }
   return "";
+}
+
+double ContactThickness::between(ShellIndex a, ShellIndex b) const {
+  if (rules.empty()) return (of_shell[a.value] + of_shell[b.value]) / 2;
+  const GapRule &of_a = rules[a.value], &of_b = rules[b.value];
+  const double mean = std::min((of_a.thickness + of_b.thickness) / 2, (of_a.by_mesh + of_b.by_mesh) / 2);
+  return std::max(std::min(of_a.least, of_b.least), std::min(mean, std::max(of_a.most, of_b.most)));
 }
 
 ContactThickness section_thickness(const Model& model) {

@@ -1,6 +1,7 @@
 #include "mesh/contact/deck_contacts.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -50,7 +51,6 @@ class MemberFinder {
     for (const Reference& reference : taken_away) mark(reference, 0);
   }
 
- private:
   void mark(const Reference& reference, std::uint8_t as = 1) {
     switch (reference.referred) {
       case Referred::part:
@@ -72,6 +72,7 @@ class MemberFinder {
     }
   }
 
+ private:
   static std::vector<std::uint8_t>& made(std::vector<std::uint8_t>& marks, std::size_t count) {
     marks.resize(count, 0);
     return marks;
@@ -119,13 +120,58 @@ DeckContacts::DeckContacts(const Model& model, const ContactCards& cards, const 
   }
 }
 
+/// OpenRadioss, i7sti3: a constant gap is the mean thickness of the main surface's shells, the least of a variable one their least
+/// thickness; both at most half of its shortest side.
+double DeckContacts::least_of_gap(const Sides& sides, const std::vector<double>& own) const {
+  const ContactGap& gap = *sides.card->gap;
+  if (gap.min > 0) return gap.min;
+  const Side& main = sides.b ? *sides.b : sides.a;
+  double sum = 0, thinnest = std::numeric_limits<double>::infinity(), shortest = thinnest;
+  std::size_t count = 0;
+  for (std::size_t s = 0; s < model_.shell_count(); ++s) {
+    const ShellIndex shell(s);
+    if (model_.is_removed(shell) || !(own[s] > 0) || !sees(main, shell)) continue;
+    const double thickness = gap.scale * own[s];
+    sum += thickness, ++count;
+    thinnest = std::min(thinnest, thickness);
+    shortest = std::min(shortest, shortest_side(model_, shell));
+  }
+  if (count == 0) return 0;
+  return std::min(gap.variable ? thinnest : sum / static_cast<double>(count), shortest / 2);
+}
+
+GapRule DeckContacts::rule_in(const Sides& sides, ShellIndex shell, double own) const {
+  const ContactGap& gap = *sides.card->gap;
+  GapRule rule;
+  rule.least = sides.least;
+  rule.thickness = gap.variable ? gap.scale * own : sides.least;
+  if (gap.variable && gap.max > 0) rule.most = gap.max;
+  if (gap.variable && gap.mesh_share > 0) rule.by_mesh = 2 * gap.mesh_share * shortest_side(model_, shell);
+  return rule;
+}
+
+void DeckContacts::offset(ShellIndex shell, double own, ContactThickness& thickness) const {
+  const PartIndex part = model_.shell_parts[shell.value];
+  if (!part.valid() || !(*model_.parts)[part.value].section) return;
+  const auto share = cards_.offset_of_section.find(*(*model_.parts)[part.value].section);
+  if (share == cards_.offset_of_section.end()) return;
+  if (thickness.offset.empty()) thickness.offset.assign(model_.shell_count(), 0);
+  const double offset = share->second * (cards_.offsets == ContactOffsets::of_contact ? thickness.of_shell[shell.value] : own);
+  if (std::isfinite(offset)) thickness.offset[shell.value] = offset;
+}
+
 DeckContacts::Side DeckContacts::find(const ContactSide& side, const References& references) const {
   Side found;
   found.card = &side;
   found.everything = side.everything;
-  if (side.everything || !side.referred) return found;
+  if (side.everything || (!side.referred && side.members.empty())) return found;
   Members members;
-  MemberFinder(model_, references, members).add(*side.referred, side.id);
+  MemberFinder finder(model_, references, members);
+  if (side.referred) finder.add(*side.referred, side.id);
+  for (const bool away : {false, true})
+    for (const ContactMember& member : side.members)
+      if (member.takes_away == away)
+        finder.mark({member.referred, ReferenceRole::range, member.first, member.last, member.step}, away ? 0 : 1);
   if (side.all_but)
     for (std::uint8_t& part : members.parts) part = part == 0;
   found.parts = std::move(members.parts);
@@ -164,27 +210,47 @@ double DeckContacts::thickness_in(const ContactCard& card, const ContactSide& si
 
 ContactThickness DeckContacts::thickness() const {
   ContactThickness thickness = section_thickness(model_);
-  if (empty()) return thickness;
-  std::vector<double> own = thickness.of_shell;
+  const bool offset_all = cards_.offsets == ContactOffsets::of_every_shell;
+  if (empty() && !offset_all) return thickness;
+  const std::vector<double> own = thickness.of_shell;
   std::vector<std::uint8_t> seen(model_.shell_count(), 0);
+  std::vector<Sides> all = sides_;
+  const bool any_gap = std::any_of(all.begin(), all.end(), [](const Sides& sides) { return sides.card->gap.has_value(); });
+  for (Sides& sides : all)
+    if (sides.card->gap) sides.least = least_of_gap(sides, own);
+  if (any_gap) {
+    thickness.rules.resize(model_.shell_count());
+    for (std::size_t s = 0; s < own.size(); ++s) thickness.rules[s].thickness = own[s];
+  }
   parallel_for(model_.shell_count(), kShellGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
       const ShellIndex shell(s);
       if (model_.is_removed(shell)) continue;
       double greatest = 0;
+      GapRule rule;
       const auto take = [&](const Sides& sides, const Side& side) {
         if (!sees(side, shell)) return;
         seen[s] = 1;
-        const double in_contact = thickness_in(*sides.card, *side.card, shell, own[s]);
-        if (in_contact > greatest) greatest = in_contact;
+        GapRule its;
+        if (sides.card->gap)
+          its = rule_in(sides, shell, own[s]);
+        else
+          its.thickness = thickness_in(*sides.card, *side.card, shell, own[s]);
+        const double in_contact = std::max(its.thickness, its.least);
+        if (in_contact > greatest) greatest = in_contact, rule = its;
       };
-      for (const Sides& sides : sides_) {
+      for (const Sides& sides : all) {
         take(sides, sides.a);
         if (sides.b) take(sides, *sides.b);
       }
-      if (seen[s] != 0) thickness.of_shell[s] = greatest;
+      if (seen[s] == 0) continue;
+      thickness.of_shell[s] = greatest;
+      if (any_gap) thickness.rules[s] = rule;
     }
   });
+  if (cards_.offsets != ContactOffsets::ignored)
+    for (std::size_t s = 0; s < model_.shell_count(); ++s)
+      if ((seen[s] != 0 || offset_all) && !model_.is_removed(ShellIndex(s))) offset(ShellIndex(s), own[s], thickness);
   take_contact_thickness(model_, seen, thickness);
   return thickness;
 }

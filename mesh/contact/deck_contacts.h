@@ -21,7 +21,8 @@ class DeckContacts {
   DeckContacts(const Model& model, const ContactCards& cards, const References& references);
 
   bool empty() const { return sides_.empty(); }
-  /// The greatest thickness that a contact gives each shell. Shells that no contact sees have that of their section.
+  /// The greatest thickness that a contact gives each shell, with its rules and offsets. Shells that no contact sees have that of their
+  /// section, and no offset unless every shell has.
   ContactThickness thickness() const;
   /// The first contact, in the deck's order, that keeps the shells apart; null: none does.
   const ContactCard* between(ShellIndex a, ShellIndex b) const;
@@ -37,9 +38,13 @@ class DeckContacts {
     const ContactCard* card = nullptr;
     Side a;
     std::optional<Side> b;
+    double least = 0;  ///< of a card with a gap: its min, or what the main surface gives
   };
   Side find(const ContactSide& side, const References& references) const;
   bool sees(const Side& side, ShellIndex shell) const;
+  double least_of_gap(const Sides& sides, const std::vector<double>& own) const;
+  GapRule rule_in(const Sides& sides, ShellIndex shell, double own) const;
+  void offset(ShellIndex shell, double own, ContactThickness& thickness) const;
   double thickness_in(const ContactCard& card, const ContactSide& side, ShellIndex shell, double own) const;
 
   const Model& model_;

@@ -83,11 +83,24 @@ FacingSides::FacingSides(const SeparationInput& input, const SeparationWish& wis
 }
 
 double FacingSides::least(ShellIndex a, ShellIndex b) const {
-  const double mean = (input_.thickness.of_shell[a.value] + input_.thickness.of_shell[b.value]) / 2;
+  const double mean = input_.thickness.between(a, b);
   return std::max(mean + wish_.gap - wish_.allowed_depth, mean > 0 ? kMinShareOfThickness * mean : wish_.gap);
 }
 
 bool FacingSides::is_entering(NodeIndex node) const { return std::binary_search(region_.entering.begin(), region_.entering.end(), node); }
+
+bool FacingSides::any_stands() const {
+  const auto stands = [&](ShellIndex shell) {
+    const Vec3 vector = area_vector(model_, shell);
+    return std::abs(vector.dot(direction_)) < kMinCosOfFacing * vector.norm();
+  };
+  for (const ShellSet& side : region_.shells)
+    if (std::any_of(side.begin(), side.end(), stands)) return true;
+  return std::any_of(region_.entering.begin(), region_.entering.end(), [&](NodeIndex node) {
+    const auto shells = model_.adjacency->shells_of(node);
+    return std::any_of(shells.begin(), shells.end(), stands);
+  });
+}
 
 /// The other side's normal at the closest point, to the side on which the node must be; weighted by how much is missing there.
 FacingSides::OwnWay FacingSides::way_at(const spatial::ShellTree& lower, NodeIndex node) const {
@@ -225,6 +238,37 @@ double FacingSides::add_missing(const Model& moved, const SideLifts& now, double
     grow_lower(direction_);
   }
   return longest;
+}
+
+void FacingSides::add_missing_of_nodes(double upper_share, SideLifts& needed) const {
+  if (upper_share > 0) add_missing_of_nodes(upper_, lower_, 1, upper_share, needed.upper);
+  if (upper_share < 1) add_missing_of_nodes(lower_, upper_, -1, 1 - upper_share, needed.lower);
+}
+
+/// `sign`: along the nodes' ways, or against them.
+void FacingSides::add_missing_of_nodes(const ShellSet& moving, const ShellSet& fixed, double sign, double share, Lifts& needed) const {
+  const double height = region_.perforation ? region_.way + reach_ : kSweepInReaches * reach_ / cos_of_wish_;
+  for (const NodeIndex node : nodes_of(model_, moving)) {
+    const Vec3& at = model_.position(node);
+    if (!at.allFinite() || !input_.why_stays(node).empty()) continue;
+    const Vec3 way = sign * way_of(node);
+    Eigen::AlignedBox3d box(at);
+    box.extend(at + height * way);
+    double longest = 0;
+    tree_.near_box(box.min(), box.max(), reach_, [&](ShellIndex other, const spatial::FloatBox&) {
+      const ShellNodes& its = model_.shell(other);
+      if (!has(fixed, other) || std::find(its.node.begin(), its.node.end(), node) != its.node.end()) return true;
+      double apart = 0;
+      for (const ShellIndex own : model_.adjacency->shells_of(node))
+        if (has(moving, own) && !share_a_node(model_.shell(own), its)) apart = std::max(apart, least(own, other));
+      if (!(apart > 0)) return true;
+      each_shell_triangle(model_, other, [&](const ShellTriangle& t) {
+        longest = std::max(longest, lift_apart({at, at, at}, t.at, way, apart));
+      });
+      return true;
+    });
+    if (longest > kMinLiftShare * reach_) needed.emplace(node, Lift{share * longest, way_of(node)});
+  }
 }
 
 /// Lifts shell by shell, and the neighbours of what is lifted.

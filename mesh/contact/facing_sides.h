@@ -29,11 +29,17 @@ class FacingSides {
   /// Returns the longest lift that is missing.
   double add_missing(const Model& moved, const SideLifts& now, double upper_share, SideLifts& needed);
 
+  /// Adds to `needed` what each node of the two sides misses by itself, as they stand before: less than add_missing() does, which moves all
+  /// corners of a triangle as far as its worst point must go. Nodes that stay are left out.
+  void add_missing_of_nodes(double upper_share, SideLifts& needed) const;
+
   const ShellSet& upper() const { return upper_; }
   const ShellSet& lower() const { return lower_; }
   double reach() const { return reach_; }               ///< the greatest least distance
   const Vec3& direction() const { return direction_; }  ///< the mean
-  double cos_of_wish() const { return cos_of_wish_; }   ///< between the wished direction and the mean; 1 without a wish
+  /// Whether a shell of the region, or one at a node that enters, stands steeply on the way out: more than 60 degrees from facing it.
+  bool any_stands() const;
+  double cos_of_wish() const { return cos_of_wish_; }  ///< between the wished direction and the mean; 1 without a wish
   /// The least distance of two shells.
   double least(ShellIndex a, ShellIndex b) const;
 
@@ -53,6 +59,7 @@ class FacingSides {
   Vec3 way_of(NodeIndex node) const;
   bool is_entering(NodeIndex node) const;
   CornerLift lift_of(const ShellTriangle& moving, const ShellTriangle& fixed, const Vec3& way, double apart) const;
+  void add_missing_of_nodes(const ShellSet& moving, const ShellSet& fixed, double sign, double share, Lifts& needed) const;
   double lift_upper(const Model& moved, const SideLifts& now, double upper_share, SideLifts& needed);
   double lift_shell(const Model& moved, const SideLifts& now, double upper_share, ShellIndex shell, SideLifts& needed);
 

@@ -106,21 +106,21 @@ Vec3 normal_of(const Model& model, ShellIndex shell) {
 
 std::vector<WayOut> ways_out(const Model& model, const ContactThickness& thickness, double gap, const ShellSet& own,
                              const ShellSet& other) {
-  std::map<NodeIndex, double> thickness_at;
+  std::map<NodeIndex, ShellIndex> thickest_at;
   for (const ShellIndex shell : own)
     for (const NodeIndex node : model.shell(shell).node) {
-      double& at = thickness_at[node];
-      at = std::max(at, thickness.of_shell[shell.value]);
+      ShellIndex& at = thickest_at.emplace(node, shell).first->second;
+      if (thickness.of_shell[shell.value] > thickness.of_shell[at.value]) at = shell;
     }
   const spatial::ShellTree tree(model, other);
   std::vector<WayOut> ways;
   std::vector<ShellIndex> closest_shell;
   Vec3 whole = Vec3::Zero();  // the side on which the nodes are
-  for (const auto& [node, its] : thickness_at) {
+  for (const auto& [node, thickest] : thickest_at) {
     const Vec3& point = model.position(node);
     const auto closest = tree.closest(point);
     if (!closest) continue;
-    const double mean = (its + thickness.of_shell[closest->shell.value]) / 2;
+    const double mean = thickness.between(thickest, closest->shell);
     const double depth = mean + gap - closest->distance;
     if (!(depth > kMinDepthShare * mean)) continue;
     const Vec3 away = point - closest->point;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <utility>
@@ -16,6 +17,7 @@
 #include "mesh/contact/separation_check.h"
 #include "mesh/contact/sort_unique.h"
 #include "mesh/contact/spread_lifts.h"
+#include "mesh/contact/try_regions.h"
 #include "mesh/model/adjacency.h"
 
 namespace prismesh::mesh::contact {
@@ -25,20 +27,30 @@ namespace {
 constexpr int kMaxRounds = 30;
 /// How steeply displacements fall off, the narrowest first: the first that does no harm is taken.
 constexpr std::array kSlopes{0.3, 0.15, 0.08, 0.04, 0.02};
+/// Tried where the surroundings lose a weld or are pushed into another part: so they move less.
+constexpr std::array kSteepSlopes{0.6, 1.2, 2.4, std::numeric_limits<double>::infinity()};
 constexpr double kMaxExcess = 0.05;                    ///< of the target size: how much farther than needed a node may go
 constexpr double kMinCosOfWish = 0.17364817766693033;  ///< a wished direction within 80 degrees of the way out
 constexpr double kMissing = 1e-5;                      ///< of the least distance
 constexpr int kDigitsOfWhy = 3;
 
+/// How nodes are moved.
+struct Manner {
+  bool each_its_own = false;  ///< directions
+  bool by_nodes = false;      ///< each first as far as it must by itself; else triangle by triangle
+};
+/// The first that does no harm is taken.
+constexpr std::array<Manner, 4> kManners{{{false, false}, {false, true}, {true, false}, {true, true}}};
+
 /// One way to try.
 struct Attempt {
   double upper_share = 1;
-  bool each_its_own = false;  ///< directions
+  Manner manner;
   double slope = 0;
 };
 
 /// What may help where an attempt failed.
-enum class Fails : std::uint8_t { for_good, gentler_may_help, own_directions_may_help };
+enum class Fails : std::uint8_t { for_good, gentler_may_help, steeper_may_help, own_directions_may_help };
 
 struct Outcome {
   SeparatedModel state;  ///< without its contacts
@@ -59,25 +71,40 @@ class RegionSeparator {
     const std::vector<double> all_shares = shares();
     for (const double share : all_shares) {
       const bool is_first = share == all_shares.front();
-      bool own_may_help = true;
-      for (const bool each_its_own : {false, true}) {
-        if (each_its_own && (region_.perforation || wish_.direction || !own_may_help)) continue;
-        for (const double slope : kSlopes) {
-          if (progress && !progress(fraction)) return fail(cancelled());
-          Outcome outcome = attempt({share, each_its_own, slope});
-          if (outcome.why.empty()) return outcome;
-          if (first.why.empty() || (is_first && !each_its_own)) first.why = outcome.why;
-          if (outcome.fails_by != Fails::gentler_may_help) {
-            own_may_help = outcome.fails_by == Fails::own_directions_may_help;
-            break;
-          }
-        }
+      bool own_may_help = false;
+      for (const Manner& manner : kManners) {
+        if (manner.each_its_own && (region_.perforation || wish_.direction || !own_may_help)) continue;
+        Result<Outcome> outcome = try_slopes(share, manner, progress, fraction);
+        if (!outcome || outcome->why.empty()) return outcome;
+        own_may_help = own_may_help || outcome->fails_by == Fails::own_directions_may_help;
+        if (first.why.empty() || (is_first && !manner.each_its_own && !manner.by_nodes)) first.why = outcome->why;
       }
     }
     return first;
   }
 
  private:
+  /// The first slope that does no harm; if none, the gentlest but for those that are steeper than usual.
+  Result<Outcome> try_slopes(double share, const Manner& manner, const Progress& progress, double fraction) const {
+    Outcome gentlest;
+    gentlest.fails_by = Fails::gentler_may_help;
+    for (const double slope : kSlopes) {
+      if (gentlest.fails_by != Fails::gentler_may_help) break;
+      if (progress && !progress(fraction)) return fail(cancelled());
+      gentlest = attempt({share, manner, slope});
+      if (gentlest.why.empty()) return gentlest;
+    }
+    Fails fails_by = gentlest.fails_by;
+    for (const double slope : kSteepSlopes) {
+      if (fails_by != Fails::steeper_may_help) break;
+      if (progress && !progress(fraction)) return fail(cancelled());
+      Outcome outcome = attempt({share, manner, slope});
+      if (outcome.why.empty()) return outcome;
+      fails_by = outcome.fails_by;
+    }
+    return gentlest;
+  }
+
   std::vector<double> shares() const {
     const bool upper = region_.may_move[region_.upper], lower = region_.may_move[region_.lower()];
     std::vector<double> shares;
@@ -89,7 +116,7 @@ class RegionSeparator {
 
   Outcome attempt(const Attempt& attempt) const {
     Outcome outcome;
-    FacingSides sides(input_, wish_, before_.model, before_.tree, region_, attempt.each_its_own);
+    FacingSides sides(input_, wish_, before_.model, before_.tree, region_, attempt.manner.each_its_own);
     if (sides.cos_of_wish() < kMinCosOfWish) {
       outcome.why = "the direction runs along the shells there";
       return outcome;
@@ -97,14 +124,18 @@ class RegionSeparator {
     SideLifts needed, lifts;
     outcome.state.model = before_.model;
     bool clear = false;
+    if (attempt.manner.by_nodes) {
+      sides.add_missing_of_nodes(attempt.upper_share, needed);
+      outcome.why = why_not_lifted(needed, attempt.upper_share, sides, outcome.fails_by);
+      if (!outcome.why.empty()) return outcome;
+      lift(needed, attempt.slope, lifts, outcome);
+    }
     for (int round = 0; round < kMaxRounds && !clear; ++round) {
       clear = sides.add_missing(outcome.state.model, lifts, attempt.upper_share, needed) <= kMissing * sides.reach();
       if (clear) break;
       outcome.why = why_not_lifted(needed, attempt.upper_share, sides, outcome.fails_by);
       if (!outcome.why.empty()) return outcome;
-      lifts.upper = spread(needed.upper, attempt.slope);
-      lifts.lower = spread(needed.lower, attempt.slope);
-      put(lifts, outcome);
+      lift(needed, attempt.slope, lifts, outcome);
     }
     if (!clear) {
       outcome.why = "its sides don't get clear of each other";
@@ -115,14 +146,29 @@ class RegionSeparator {
     return outcome;
   }
 
+  void lift(const SideLifts& needed, double slope, SideLifts& lifts, Outcome& outcome) const {
+    lifts.upper = spread(needed.upper, slope);
+    lifts.lower = spread(needed.lower, slope);
+    put(lifts, outcome);
+  }
+
   void finish(const FacingSides& sides, Outcome& outcome) const {
+    if (input_.carry) {
+      const NodeSet carried = input_.carry(before_.model, outcome.moved, outcome.state.model);
+      outcome.moved.insert(outcome.moved.end(), carried.begin(), carried.end());
+      sort_unique(outcome.moved);
+    }
     outcome.state.tree = before_.tree;
     outcome.state.states = before_.states;
     outcome.state.reach = before_.reach;
     Harm harm = harm_of(input_, wish_, before_, outcome.state, outcome.moved, {sides.upper(), sides.lower()});
+    if (harm.why.empty() && input_.why_lost) {
+      harm.why = input_.why_lost(before_.model, outcome.state.model, outcome.moved);
+      harm.by_surroundings = !harm.why.empty();
+    }
     outcome.why = std::move(harm.why);
     outcome.at_moved = std::move(harm.at_moved);
-    outcome.fails_by = harm.to_shells ? Fails::gentler_may_help : Fails::for_good;
+    outcome.fails_by = harm.to_shells ? Fails::gentler_may_help : harm.by_surroundings ? Fails::steeper_may_help : Fails::for_good;
   }
 
   Lifts spread(const Lifts& needed, double slope) const {
@@ -158,7 +204,9 @@ class RegionSeparator {
     if (!why.empty()) return why;
     if (wish_.max_move && longest > *wish_.max_move) return "max_move is too small: it takes " + readable(longest, kDigitsOfWhy);
     if (excess > 0) fails_by = Fails::own_directions_may_help;
-    if (excess > 0) return "the way out is longer than the region is deep: a node would go " + readable(longest, kDigitsOfWhy);
+    if (excess > 0)
+      return "the way out is longer than the region is deep: a node would go " + readable(longest, kDigitsOfWhy) +
+             (sides.any_stands() ? ", as shells stand more than 60 degrees steep on it" : "");
     return {};
   }
 
@@ -260,7 +308,7 @@ bool leave_harmful(const SeparatedModel& before, const Contacts& after, double g
 /// The greatest depth of what is left of the regions, as the model is now.
 double depth_left(const SeparationInput& input, const SeparationWish& wish, const SeparatedModel& state, const FoundContacts& found,
                   const std::vector<MeantRegion>& regions) {
-  const SeparationInput now{state.model, state.tree, input.thickness, input.criteria, state.states, input.joints, input.why_stays};
+  const SeparationInput now{state.model, state.tree, input.thickness, input.criteria, state.states, input.joints, input.why_stays, {}, {}};
   SeparationWish anywhere = wish;
   anywhere.at.reset();
   ShellSet meant;
@@ -277,40 +325,76 @@ double depth_left(const SeparationInput& input, const SeparationWish& wish, cons
   return depth;
 }
 
+SeparatedModel state_before(const SeparationInput& input, const SeparationWish& wish, const FoundContacts& found) {
+  const auto& thickness = input.thickness.of_shell;
+  const double thickest = thickness.empty() ? 0 : *std::max_element(thickness.begin(), thickness.end());
+  return {input.model, input.tree, input.states, by_pair(found, wish.gap), wish.gap + thickest};
+}
+
+/// What became of the regions, and the contacts that may differ or are of them.
+struct SeparatedRegions {
+  Pass pass;
+  FoundContacts found;
+};
+
+/// Until no change is left that makes new contacts farther away.
+Result<SeparatedRegions> separate_regions(const SeparationInput& input, const SeparationWish& wish, const SeparatedModel& before,
+                                          std::vector<MeantRegion> regions, const Progress& progress) {
+  ShellSet meant;
+  for (const MeantRegion& region : regions)
+    for (const ShellSet& shells : region.shells) meant.insert(meant.end(), shells.begin(), shells.end());
+  for (;;) {
+    Result<Pass> pass = separate_all(input, wish, before, regions, progress);
+    if (!pass) return fail(pass.error());
+    ShellSet moved;
+    for (const ShellSet& touched : pass->touched) moved.insert(moved.end(), touched.begin(), touched.end());
+    sort_unique(moved);
+    FoundContacts found = find_contacts_about(input, wish, before, pass->state, moved, meant);
+    if (!leave_harmful(before, by_pair(found, wish.gap), wish.gap, *pass, regions))
+      return SeparatedRegions{std::move(*pass), std::move(found)};
+  }
+}
+
 }  // namespace
 
 Result<Separation> separate(const SeparationInput& input, const SeparationWish& wish, const Progress& progress) {
-  FoundContacts found = find_contacts(input, wish, input.model, input.tree);
-  std::vector<MeantRegion> regions = find_meant_regions(input, wish, found);
+  const FoundContacts found = find_contacts(input, wish, input.model, input.tree);
+  const std::vector<MeantRegion> regions = find_meant_regions(input, wish, found);
   Separation done;
   done.regions_before = regions.size();
   for (const MeantRegion& region : regions) done.depth_before = std::max(done.depth_before, region.depth.value_or(0));
   if (regions.empty()) return done;
-  const auto& thickness = input.thickness.of_shell;
-  const SeparatedModel before{input.model, input.tree, input.states, by_pair(found, wish.gap),
-                              wish.gap + *std::max_element(thickness.begin(), thickness.end())};
-  Result<Pass> pass = separate_all(input, wish, before, regions, progress);
-  ShellSet meant;
-  for (const MeantRegion& region : regions)
-    for (const ShellSet& shells : region.shells) meant.insert(meant.end(), shells.begin(), shells.end());
-  while (pass) {
-    ShellSet moved;
-    for (const ShellSet& touched : pass->touched) moved.insert(moved.end(), touched.begin(), touched.end());
-    sort_unique(moved);
-    found = find_contacts_about(input, wish, before, pass->state, moved, meant);
-    if (!leave_harmful(before, by_pair(found, wish.gap), wish.gap, *pass, regions)) break;
-    pass = separate_all(input, wish, before, regions, progress);
-  }
-  if (!pass) return fail(pass.error());
+  const Result<SeparatedRegions> separated = separate_regions(input, wish, state_before(input, wish, found), regions, progress);
+  if (!separated) return fail(separated.error());
+  const Pass& pass = separated->pass;
   for (std::size_t i = 0; i < regions.size(); ++i)
-    if (!pass->why[i].empty()) done.left.push_back({regions[i].part[0], regions[i].part[1], pass->why[i]});
-  done.nodes = moved_nodes(input.model, pass->state.model);
+    if (!pass.why[i].empty()) done.left.push_back({regions[i].part[0], regions[i].part[1], pass.why[i]});
+  done.nodes = moved_nodes(input.model, pass.state.model);
   for (const NodeIndex node : done.nodes) {
-    done.positions.push_back(pass->state.model.position(node));
+    done.positions.push_back(pass.state.model.position(node));
     done.largest_move = std::max(done.largest_move, (done.positions.back() - input.model.position(node)).norm());
   }
-  done.depth_after = done.nodes.empty() ? done.depth_before : depth_left(input, wish, pass->state, found, regions);
+  done.depth_after = done.nodes.empty() ? done.depth_before : depth_left(input, wish, pass.state, separated->found, regions);
   return done;
+}
+
+Result<std::vector<RegionTrial>> try_regions(const SeparationInput& input, const SeparationWish& wish, std::size_t limit,
+                                             const Progress& progress) {
+  const FoundContacts found = find_contacts(input, wish, input.model, input.tree);
+  const std::vector<MeantRegion> regions = find_meant_regions(input, wish, found);
+  const SeparatedModel before = state_before(input, wish, found);
+  std::vector<RegionTrial> trials;
+  for (std::size_t i = 0, tried = 0; i < regions.size(); ++i) {
+    const double fraction = static_cast<double>(i) / static_cast<double>(regions.size());
+    if (regions[i].why_left.empty() && tried++ >= limit) continue;
+    RegionTrial& trial = trials.emplace_back(RegionTrial{regions[i].perforation.has_value(), regions[i].shells, regions[i].why_left});
+    if (!trial.why.empty()) continue;
+    const Result<SeparatedRegions> separated =
+        separate_regions(input, wish, before, {regions[i]}, [&](double) { return !progress || progress(fraction); });
+    if (!separated) return fail(separated.error());
+    trial.why = separated->pass.why.front();
+  }
+  return trials;
 }
 
 }  // namespace prismesh::mesh::contact

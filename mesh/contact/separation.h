@@ -31,6 +31,11 @@ struct SeparationInput {
   std::span<const connections::JoinedSheets::Pair> joints;  ///< pairs of shells that the deck joins
   /// Why a node can't move, as a predicate ("are locked"); empty: it can.
   std::function<std::string_view(NodeIndex)> why_stays;
+  /// Moves what goes along with the shells at the nodes `moved`, as welds that lie on them, in `after`, which has these elsewhere than
+  /// `before`. Returns the nodes that it moved, ascending, none of them of a shell. Null: nothing goes along.
+  std::function<NodeSet(const Model& before, const NodeSet& moved, Model& after)> carry{};
+  /// What `after` loses that `before` had, as a weld between parts, as a sentence; empty: nothing. Null: nothing can be lost.
+  std::function<std::string(const Model& before, const Model& after, const NodeSet& moved)> why_lost{};
 };
 
 enum class MovingSide : std::uint8_t {

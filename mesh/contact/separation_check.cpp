@@ -85,7 +85,7 @@ Harm harm_of(const SeparationInput& input, const SeparationWish& wish, const Sep
   const ShellSet touched = shells_touching(after.model, moved);
   quality::Counts unused;
   quality::rejudge(after.model, input.criteria, touched, after.states, unused);
-  if (std::string why = why_failing(before, after, touched); !why.empty()) return {std::move(why), true, {}};
+  if (std::string why = why_failing(before, after, touched); !why.empty()) return {std::move(why), true, false, {}};
   after.tree.follow(after.model);
   ShellSet near = touched;
   for (const SeparatedModel* state : {&before, static_cast<const SeparatedModel*>(&after)})
@@ -100,8 +100,9 @@ Harm harm_of(const SeparationInput& input, const SeparationWish& wish, const Sep
     const bool of_region =
         (has_shell(sides.upper, a) && has_shell(sides.lower, b)) || (has_shell(sides.upper, b) && has_shell(sides.lower, a));
     if (of_region && (contact.crosses || contact.depth > wish.allowed_depth + kMinDepthShare * contact.mean_thickness))
-      return {"the way out isn't free of the other side", false, {}};
+      return {"the way out isn't free of the other side", false, false, {}};
     if (of_region || !(touches_a || touches_b) || !harm.why.empty() || !is_worse(contact, before.contacts, pair, wish.gap)) continue;
+    harm.by_surroundings = true;
     harm.why = "it would push " + part_name(after.model, after.model.shell_parts[(touches_a ? a : b).value]) + " into " +
                part_name(after.model, after.model.shell_parts[(touches_a ? b : a).value]);
   }

@@ -48,9 +48,10 @@ struct SidesToClear {
 
 /// Why a change can't be made.
 struct Harm {
-  std::string why;         ///< a sentence; empty: it does none
-  bool to_shells = false;  ///< a gentler change may do none
-  Contacts at_moved;       ///< if it does none: of the shells that changed, as they are afterwards
+  std::string why;               ///< a sentence; empty: it does none
+  bool to_shells = false;        ///< a gentler change may do none
+  bool by_surroundings = false;  ///< of the sides: a steeper change, which moves less of them, may do none
+  Contacts at_moved;             ///< if it does none: of the shells that changed, as they are afterwards
 };
 /// Compares the shells at `moved` and what is near them. `after` has the changed model, and the tree and the states of `before`, which are
 /// brought up to date. Costs what is near, not the model.

@@ -1,6 +1,7 @@
 #include "mesh/contact/spread_lifts.h"
 
 #include <algorithm>
+#include <cmath>
 #include <queue>
 #include <utility>
 #include <vector>
@@ -93,6 +94,7 @@ void smooth(const Model& model, const Lifts& needed, Lifts& lifts) {
 }  // namespace
 
 Lifts spread_lifts(const Model& model, const Lifts& needed, double slope, const std::function<bool(NodeIndex)>& movable) {
+  if (std::isinf(slope)) return needed;
   Lifts lifts = cone_over(model, needed, slope, movable);
   smooth(model, needed, lifts);
   return lifts;

@@ -17,7 +17,9 @@ using Lifts = std::map<NodeIndex, Lift>;
 
 /// Returns the lifts of `needed`, and of nodes about them that follow, so that lifts of neighbours differ by `slope` times their distance
 /// over sides and diagonals of shells at most, and as smoothly as that permits. No lift is smaller than it is needed, none longer than the
-/// longest. Nodes that aren't `movable` stay, and nothing is spread over them. Costs the nodes that move. Precondition: adjacency.
+/// longest. An infinite slope: those of
+/// `needed` alone, as they are. Nodes that aren't `movable` stay, and nothing is spread over them. Costs the nodes that move. Precondition:
+/// adjacency.
 Lifts spread_lifts(const Model& model, const Lifts& needed, double slope, const std::function<bool(NodeIndex)>& movable);
 
 }  // namespace prismesh::mesh::contact

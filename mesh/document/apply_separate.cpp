@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <iterator>
@@ -21,6 +20,7 @@
 #include "mesh/document/joined_sheets.h"
 #include "mesh/document/pins.h"
 #include "mesh/document/selection.h"
+#include "mesh/document/separation_setting.h"
 #include "mesh/select/expression.h"
 
 namespace prismesh::mesh::document {
@@ -29,11 +29,6 @@ namespace {
 
 constexpr std::size_t kMaxNotesOfLeft = 20;
 constexpr int kNoteDigits = 3;
-
-/// As predicates of nodes, in the order of Stays.
-constexpr std::array<std::string_view, 5> kStayAsPredicates{"are locked", "are held by the deck", "have elements other than shells",
-                                                            "are joined by cards", "are beside mid-side nodes that can't follow"};
-constexpr std::string_view kCarry = "carry welds or ties";
 
 Result<void> refuse_unsound(const Separate& edit) {
   const auto sound = [](double value) { return std::isfinite(value) && value >= 0; };
@@ -55,27 +50,6 @@ Result<std::optional<ShellSet>> shells_named(const Generation& generation, const
   std::sort(chosen->shells.begin(), chosen->shells.end());
   return std::optional<ShellSet>(std::move(chosen->shells));
 }
-
-/// What each node may do.
-class Movable {
- public:
-  explicit Movable(const Generation& generation) : pins_(generation), carries_(generation.model.node_count(), 0) {
-    for (const NodeOnSheet& each : generation.relations->dependents.on_sheets) {
-      carries_[each.node.value] = 1;
-      if (!generation.model.is_removed(each.shell))
-        for (const NodeIndex corner : generation.model.shell(each.shell).node) carries_[corner.value] = 1;
-    }
-  }
-  std::string_view why_stays(NodeIndex node) const {
-    const Stays why = pins_.of(node);
-    if (why != Stays::goes) return kStayAsPredicates[static_cast<std::size_t>(why)];
-    return carries_[node.value] != 0 ? kCarry : std::string_view();
-  }
-
- private:
-  Pins pins_;
-  std::vector<std::uint8_t> carries_;
-};
 
 std::string part_reference(const Model& model, PartIndex part) {
   return part.valid() ? "part:" + std::to_string((*model.parts)[part.value].id) : "";
@@ -177,13 +151,8 @@ Result<void> apply_edit(const Document& document, const Separate& edit, Generati
   wish.direction = edit.direction;
   wish.max_move = edit.max_move;
   wish.allowed_depth = edit.allowed_depth;
-  const Movable movable(current);
-  const spatial::BoxTree tree(current.model);
-  const contact::ContactThickness thickness = contact_thickness(current);
-  const std::vector<connections::JoinedSheets::Pair> pairs = joints(current);
-  const Result<contact::Separation> done = contact::separate({current.model, tree, thickness, judged_by(document), current.quality, pairs,
-                                                              [&](NodeIndex node) { return movable.why_stays(node); }},
-                                                             wish, progress);
+  const SeparationSetting setting(document, contact_thickness(current));
+  const Result<contact::Separation> done = contact::separate(setting.input(), wish, progress);
   if (!done) return fail(done.error());
   say_what(current.model, *done, report);
   if (done->nodes.empty()) return {};

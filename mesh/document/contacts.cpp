@@ -5,6 +5,7 @@
 #include <string_view>
 #include <utility>
 
+#include "mesh/contact/contact_surface.h"
 #include "mesh/contact/deck_contacts.h"
 #include "mesh/contact/find_penetrations.h"
 #include "mesh/contact/find_perforations.h"
@@ -30,8 +31,13 @@ contact::DeckContacts deck_contacts(const Generation& generation) {
 /// Fills in what regions of both kinds have.
 class RegionWriter {
  public:
-  RegionWriter(const Generation& generation, const contact::ContactThickness& thickness)
-      : model_(generation.model), thickness_(thickness), joints_(model_, joints(generation)), contacts_(deck_contacts(generation)) {}
+  /// `surface`: on which they were found.
+  RegionWriter(const Generation& generation, const Model& surface, const contact::ContactThickness& thickness)
+      : nodes_(generation.model),
+        model_(surface),
+        thickness_(thickness),
+        joints_(model_, joints(generation)),
+        contacts_(deck_contacts(generation)) {}
 
   ContactRegion perforation(const contact::Perforation& found, const contact::PerforationDepth& depth) const {
     ContactRegion region = common("perforation", found.part_a, found.part_b, found.shells_a, found.shells_b);
@@ -45,7 +51,7 @@ class RegionWriter {
     region.curve = found.curve;
     for (std::size_t i = 0; i < depth.nearest.size(); ++i) {
       const Vec3& to = depth.nearest[i];
-      region.vectors.push_back({depth.entering[i], to, (to - model_.position(depth.entering[i])).norm()});
+      add_vector(region, depth.entering[i], to - model_.position(depth.entering[i]));
     }
     return region;
   }
@@ -59,12 +65,14 @@ class RegionWriter {
     region.at = (found.worst.on_a + found.worst.on_b) / 2;
     name_worst(region, found.worst.a, found.worst.b);
     for (const auto* nodes : {&found.nodes_a, &found.nodes_b})
-      for (const contact::WayOut& way : *nodes)
-        region.vectors.push_back({way.node, model_.position(way.node) + way.depth * way.direction, way.depth});
+      for (const contact::WayOut& way : *nodes) add_vector(region, way.node, way.depth * way.direction);
     return region;
   }
 
  private:
+  void add_vector(ContactRegion& region, NodeIndex node, const Vec3& by) const {
+    region.vectors.push_back({node, nodes_.position(node) + by, by.norm()});
+  }
   std::string shell_name(ShellIndex shell) const { return "shell:" + std::to_string(model_.shell_ids[shell.value]); }
   void name_worst(ContactRegion& region, ShellIndex a, ShellIndex b) const {
     region.worst_a = shell_name(a), region.worst_b = shell_name(b);
@@ -86,6 +94,7 @@ class RegionWriter {
     return region;
   }
 
+  const Model& nodes_;
   const Model& model_;
   const contact::ContactThickness& thickness_;
   contact::JointsOfParts joints_;
@@ -153,7 +162,8 @@ std::shared_ptr<const contact::ContactThickness> ContactSearch::section_thicknes
 }
 
 std::shared_ptr<const contact::ContactThickness> ContactSearch::thickness(const Generation& generation) {
-  if (generation.relations->deck->contacts.cards.empty()) return section_thickness(generation.model);
+  const ContactCards& contacts = generation.relations->deck->contacts;
+  if (contacts.cards.empty() && contacts.offsets == ContactOffsets::ignored) return section_thickness(generation.model);
   return std::make_shared<const contact::ContactThickness>(contact_thickness(generation));
 }
 
@@ -163,11 +173,10 @@ Result<Contacts> find_contacts(const Generation& generation, ContactSearch& sear
   if (!std::isfinite(wish.gap) || wish.gap < 0) return fail("contact", "the gap must be a length of at least 0");
   if (wish.thickness && !(std::isfinite(*wish.thickness) && *wish.thickness > 0))
     return fail("contact", "the thickness must be a length above 0");
-  const Model& model = generation.model;
   ShellSet selected;
   if (wish.select) {
     Result<select::Chosen> chosen =
-        select::evaluate(model, *wish.select, select::EntityKind::element, generation.relations->names, progress);
+        select::evaluate(generation.model, *wish.select, select::EntityKind::element, generation.relations->names, progress);
     if (!chosen) return fail(chosen.error());
     selected = std::move(chosen->shells);
     std::sort(selected.begin(), selected.end());
@@ -175,12 +184,13 @@ Result<Contacts> find_contacts(const Generation& generation, ContactSearch& sear
   const ShellSet* only = wish.select ? &selected : nullptr;
   Share share(progress);
   if (!share.from_to(0, 0)(0)) return fail(cancelled());
-  const spatial::BoxTree& tree = search.tree(model);
   const std::shared_ptr<const contact::ContactThickness> thickness =
-      wish.thickness     ? std::make_shared<const contact::ContactThickness>(contact::given_thickness(model, *wish.thickness))
+      wish.thickness     ? std::make_shared<const contact::ContactThickness>(contact::given_thickness(generation.model, *wish.thickness))
       : wish.by_contacts ? search.thickness(generation)
-                         : search.section_thickness(model);
-  const RegionWriter writer(generation, *thickness);
+                         : search.section_thickness(generation.model);
+  const Model model = thickness->offset.empty() ? generation.model : contact::contact_surface(generation.model, thickness->offset);
+  const spatial::BoxTree& tree = search.tree(model);
+  const RegionWriter writer(generation, model, *thickness);
   Contacts contacts;
   if (only == nullptr) {
     if (!search.kept().search({model, tree, thickness, wish.gap}, share.from_to(kTreeBuilt, 1))) return fail(cancelled());

@@ -66,7 +66,8 @@ struct ContactRegion {
   std::string worst_a, worst_b;     ///< "shell:7" of each side: the deepest pair, or the first that cross
   bool joined = false;              ///< a weld, bond or tie joins the parts there
   std::string contact;              ///< the deck's contact that keeps the worst pair apart: ContactCard::name(); empty: none is known
-  std::string why;                  ///< why it can't be separated
+  bool clear = false;               ///< the edit separate would remove it: set by find_clear(), which tries it
+  std::string why;                  ///< why it wouldn't; or that it wasn't tried
   std::string thickness_from;
   std::vector<contact::CurveSegment> curve;  ///< along which they cross
   std::vector<ContactVector> vectors;        ///< ascending by node within a side

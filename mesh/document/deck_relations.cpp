@@ -20,10 +20,10 @@ std::span<const ElementUse> uses_at(const DeckRelations& relations, NodeIndex no
 
 std::span<const HiddenUse> hidden_at(const DeckRelations& relations, NodeIndex node) { return of_node(relations.hidden_uses, node); }
 
-bool is_joined(const DeckRelations& relations, NodeIndex node) {
-  const auto& joined = relations.dependents.joined_nodes;
-  const auto at = std::lower_bound(joined.begin(), joined.end(), node, [](const JoinedNode& each, NodeIndex n) { return each.node < n; });
-  return at != joined.end() && at->node == node;
+std::span<const JoinedNode> cards_at(const DeckRelations& relations, NodeIndex node) {
+  return of_node(relations.dependents.joined_nodes, node);
 }
+
+bool is_joined(const DeckRelations& relations, NodeIndex node) { return !cards_at(relations, node).empty(); }
 
 }  // namespace prismesh::mesh::document

@@ -36,6 +36,8 @@ struct DeckRelations {
 std::span<const ElementUse> uses_at(const DeckRelations& relations, NodeIndex node);
 /// The elements that the model leaves out at a node. Costs a binary search.
 std::span<const HiddenUse> hidden_at(const DeckRelations& relations, NodeIndex node);
+/// The cards that join the node to others. Costs a binary search.
+std::span<const JoinedNode> cards_at(const DeckRelations& relations, NodeIndex node);
 /// Whether a card joins the node to others. Costs a binary search.
 bool is_joined(const DeckRelations& relations, NodeIndex node);
 

@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "mesh/document/deck_relations.h"
 #include "mesh/document/joined_sheets.h"
 #include "mesh/document/part_marks.h"
 #include "mesh/model/adjacency.h"

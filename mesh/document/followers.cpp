@@ -47,8 +47,11 @@ FollowerNode follower_of(const Model& model, NodeIndex node, const spatial::Surf
 }  // namespace
 
 std::vector<FollowerNode> find_weld_followers(const Generation& generation, const NodeSet& moving) {
+  return find_weld_followers(generation, generation.model, moving);
+}
+
+std::vector<FollowerNode> find_weld_followers(const Generation& generation, const Model& model, const NodeSet& moving) {
   const Dependents& dependents = generation.relations->dependents;
-  const Model& model = generation.model;
   std::vector<FollowerNode> followers;
   if (dependents.on_sheets.empty()) return followers;
   const auto stays = [&](NodeIndex node) {

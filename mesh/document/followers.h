@@ -28,5 +28,7 @@ WeightedNodes find_weighted(const Model& model, const shape::Weights& weights);
 /// The nodes of welds that lie on shells with moving corners and follow these, but for those that are among `moving`, are held or belong to
 /// a locked part. Both ascending. Costs the shells that touch moving nodes.
 std::vector<FollowerNode> find_weld_followers(const Generation& generation, const NodeSet& moving);
+/// The same where the nodes stand as in `model`, which differs from the generation's by positions alone.
+std::vector<FollowerNode> find_weld_followers(const Generation& generation, const Model& model, const NodeSet& moving);
 
 }  // namespace prismesh::mesh::document

@@ -4,11 +4,12 @@
 
 #include "mesh/document/deck_relations.h"
 #include "mesh/document/edge_middles.h"
+#include "mesh/document/kept_welds.h"
 #include "mesh/model/adjacency.h"
 
 namespace prismesh::mesh::document {
 
-Pins::Pins(const Generation& generation) : generation_(generation) {
+Pins::Pins(const Generation& generation, const KeptWelds* welds) : generation_(generation), welds_(welds) {
   const Model& model = generation.model;
   if (model.midside)
     for (const MidsideNodes& midside : *model.midside)
@@ -24,8 +25,12 @@ Stays Pins::of(NodeIndex node) const {
 Stays Pins::by_itself(NodeIndex node) const {
   if ((generation_.node_marks[node.value] & kLocked) != 0) return Stays::locked;
   if (generation_.model.node_holds[node.value] != 0) return Stays::held;
-  if (!uses_at(*generation_.relations, node).empty()) return Stays::other_element;
-  return is_joined(*generation_.relations, node) ? Stays::joined : Stays::goes;
+  for (const ElementUse& use : uses_at(*generation_.relations, node))
+    if (welds_ == nullptr || !welds_->may_follow(use)) return Stays::other_element;
+  const auto joined = cards_at(*generation_.relations, node);
+  const bool all_follow =
+      welds_ != nullptr && std::all_of(joined.begin(), joined.end(), [&](const JoinedNode& each) { return welds_->may_follow(each.card); });
+  return joined.empty() || all_follow ? Stays::goes : Stays::joined;
 }
 
 /// A mid-side node follows the ends of its edge. If it can't, or is a corner of another shell, the ends stay, and so does it.

@@ -10,6 +10,8 @@
 
 namespace prismesh::mesh::document {
 
+class KeptWelds;
+
 /// Why nodes stay, in the order in which the reasons are checked.
 enum class Stays : std::uint8_t { locked, held, other_element, joined, mid_side, goes };
 inline constexpr std::array<std::string_view, 5> kWhyStays{"of locked parts", "held by the deck", "with elements other than shells",
@@ -17,8 +19,8 @@ inline constexpr std::array<std::string_view, 5> kWhyStays{"of locked parts", "h
 
 class Pins {
  public:
-  /// The generation must outlive it.
-  explicit Pins(const Generation& generation);
+  /// The generation must outlive it, as must `welds`: where they are given, nodes of what may follow its nodes go. Null: these stay.
+  explicit Pins(const Generation& generation, const KeptWelds* welds = nullptr);
 
   Stays of(NodeIndex node) const;
 
@@ -27,6 +29,7 @@ class Pins {
   void pin_beside_middles(const MidsideNodes& midside);
 
   const Generation& generation_;
+  const KeptWelds* welds_;
   NodeSet beside_middles_;
 };
 

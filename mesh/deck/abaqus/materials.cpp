@@ -1,6 +1,7 @@
 #include "mesh/deck/abaqus/materials.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <set>
 
@@ -56,11 +57,12 @@ class Reader {
       const Parameters given = outline_.parameters(kept.block);
       const auto elset = given.value("ELSET");
       if (!elset || elset->empty()) continue;
-      out.push_back({kept.block.scope, std::string(*elset), {}});
+      out.push_back({kept.block.scope, std::string(*elset), {}, 0});
       Part& part = out.back().part;
       part.section = static_cast<std::int64_t>(out.size());
       read_material_of(given, part);
       read_thickness(word, kept.block, given, part);
+      if (word == "SHELL SECTION" || word == "SHELL GENERAL SECTION") out.back().offset = offset_of(given);
       part.limits_time_step = !rigid_.contains({kept.block.scope, label(*elset)});
     }
     return out;
@@ -142,6 +144,15 @@ class Reader {
     part.poissons_ratio = at->second.poissons_ratio;
   }
 
+  /// OFFSET is how far the nodes lie from the middle, so the middle lies on the other side. That of a distribution isn't read.
+  double offset_of(const Parameters& given) const {
+    const std::string value = label(given.value("OFFSET").value_or(""));
+    if (value == "SPOS") return -0.5;
+    if (value == "SNEG") return 0.5;
+    const double fraction = number(value).value_or(0);
+    return std::isfinite(fraction) && fraction != 0 ? -fraction : 0;
+  }
+
   void read_thickness(std::string_view word, const Block& block, const Parameters& given, Part& part) const {
     const bool shell = word == "SHELL SECTION" || word == "SHELL GENERAL SECTION";
     if (!shell && word != "MEMBRANE SECTION") return;
@@ -181,5 +192,13 @@ class Reader {
 }  // namespace
 
 std::vector<Section> sections(const DeckOutline& outline) { return Reader(outline).run(); }
+
+ContactCards section_offsets(const DeckOutline& outline) {
+  ContactCards cards;
+  for (const Section& section : sections(outline))
+    if (section.offset != 0) cards.offset_of_section.try_emplace(*section.part.section, section.offset);
+  if (!cards.offset_of_section.empty()) cards.offsets = ContactOffsets::of_every_shell;
+  return cards;
+}
 
 }  // namespace prismesh::mesh::deck::abaqus

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "mesh/deck/abaqus/generated_ids.h"
+#include "mesh/deck/abaqus/materials.h"
 #include "mesh/deck/abaqus/mesh_cards.h"
 #include "mesh/deck/abaqus/references.h"
 #include "mesh/deck/abaqus/sets.h"
@@ -162,6 +163,7 @@ Result<DeckContents> read(FileSet files, Watch& watch) {
     note_left_out(found);
     place_frames(outline, found);
     found.parts = make_parts(outline, found.cards, found.warnings);
+    found.contacts = section_offsets(outline);
     if (Result<void> shifted = shift_instances(outline, found); !shifted) return fail(shifted.error());
     found.references = find_references(outline);
     found.taken = find_generated_ids(outline, largest_ids(found.cards));

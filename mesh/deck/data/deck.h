@@ -143,7 +143,7 @@ struct Deck {
   std::map<std::string, std::size_t, std::less<>> element_kinds;  ///< cards by the deck's own word: "CQUAD4", "SHELL_THICKNESS", "S4R"
   std::shared_ptr<const References> references;                   ///< cards that name entities; never null after opening
   TimeStepControl time_step;
-  ContactCards contacts;                  ///< of LS-DYNA decks
+  ContactCards contacts;                  ///< of LS-DYNA and Radioss decks
   std::optional<LengthUnit> length_unit;  ///< nullopt: the deck doesn't give it
   TakenIds taken;                         ///< united
   std::vector<CompanionFile> companions;

@@ -70,6 +70,10 @@ bool ContactReader::read(std::string_view text, const Block& block, const Parame
     read_control(text, block, parameters, context);
     return true;
   }
+  if (block.name == "CONTROL_SHELL") {
+    read_shell_control(text, block, parameters);
+    return true;
+  }
   if (!block.name.starts_with("CONTACT_")) return false;
   if (!is_other_form(block.name)) read_contact(text, block, parameters, context);
   return true;
@@ -140,6 +144,21 @@ void ContactReader::read_control(std::string_view text, const Block& block, cons
   thickness_ = positive(card.real(4, parameters)) * context.length;
 }
 
+/// Optional card 2 has CNTCO third; the card before it is needed for it.
+void ContactReader::read_shell_control(std::string_view text, const Block& block, const Parameters& parameters) {
+  const std::vector<std::string_view> lines = lines_of(text, block);
+  if (lines.size() < 3) return;
+  Card card;
+  card.cut(lines[2], block.columns);
+  offsets_ = card.integer(2, parameters).value_or(0);
+}
+
+/// NLOC: 1 is the top of the shell, -1 its bottom; the middle lies half a thickness from there.
+void ContactReader::read_section(std::int64_t section, const Card& card, const Parameters& parameters) {
+  const std::optional<double> location = card.real(4, parameters);
+  if (location && std::isfinite(*location) && *location != 0) offset_of_section_.try_emplace(section, -0.5 * *location);
+}
+
 void ContactReader::read_part(std::int64_t part, const Card& card, const Parameters& parameters, const IncludeContext& context) {
   const PartContact contact{positive(card.real(4, parameters)) * context.length, positive(card.real(5, parameters))};
   if (contact.thickness > 0 || contact.scale > 0) of_part_.try_emplace(part, contact);
@@ -149,6 +168,9 @@ ContactCards ContactReader::cards() const {
   ContactCards cards;
   cards.of_part = of_part_;
   cards.thickness = thickness_;
+  if (offsets_ == 1) cards.offsets = ContactOffsets::of_shell;
+  if (offsets_ == 2) cards.offsets = ContactOffsets::of_contact;
+  cards.offset_of_section = offset_of_section_;
   for (const Read& read : read_) {
     ContactCard card = read.card;
     const std::int64_t considered = read.thickness_considered != 0 ? read.thickness_considered : thickness_considered_;

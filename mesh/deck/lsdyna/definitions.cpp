@@ -215,6 +215,7 @@ void Definitions::read_shell_sections(std::string_view text, const Block& block,
       sum += given.value_or(0) > 0 ? *given : first.value_or(0);
     }
     if (id && is_known && sum > 0) section_thickness_.try_emplace(*id, sum / 4 * context_->length);
+    if (id) contacts_.read_section(*id, card, parameters);
     if (!repeats || !cards.skip((layered ? cards_of_eight(std::max(points, 1.0)) : 0) + option_cards)) return;
     // User-defined formulations have a card of counts, one card for each integration point, then their constants.
     if (formulation < 101 || formulation > 105) continue;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "mesh/deck/assembly/read_pieces.h"
+#include "mesh/deck/radioss/contact_cards.h"
 #include "mesh/deck/radioss/references.h"
 #include "mesh/deck/radioss/transforms.h"
 #include "mesh/deck/text/number.h"
@@ -157,12 +158,15 @@ void Collected::complete(DeckContents& found, const std::vector<std::vector<Dire
   }
   std::vector<Transform> transforms;
   std::map<std::int64_t, const Block*> groups;
+  ContactReader contacts;
   for (const Block& block : walk_.blocks) {
     const Keyword keyword = keyword_at(found.files[block.file].bytes.text(), block.offset);
     if (card_form(keyword.word(0)) == nullptr) read_references(block, keyword, tables(found.files), found.references);
+    contacts.take(block, keyword, tables(found.files));
     if (keyword.word(0) == "TRANSFORM") transforms.push_back(read_transform(block, keyword, tables(found.files)));
     if (keyword.word(0) == "GRNOD") groups.try_emplace(keyword.number(0) + walk_.contexts[block.context].added.set, &block);
   }
+  found.contacts = contacts.cards(tables(found.files));
   if (!transforms.empty()) Transformer(found, frame_context, tables(found.files), groups).run(transforms);
   add_directions(found, directions);
   check_positions(found);

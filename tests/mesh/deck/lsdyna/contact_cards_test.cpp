@@ -117,5 +117,19 @@ TEST(ContactCards, numbers_that_cant_be_a_thickness_are_none) {
   EXPECT_EQ(cards.cards[0].a.scale, 0);
 }
 
+TEST(ContactCards, offsets_of_sections_and_whether_contacts_follow_them) {
+  const std::string sections =
+      "*SECTION_SHELL\n         7         2\n       1.0       1.0       1.0       1.0       1.0\n"
+      "         8         2\n       1.0       1.0       1.0       1.0      -0.5\n"
+      "         9         2\n       1.0       1.0       1.0       1.0       0.0\n";
+  ContactCards cards = cards_of(sections);
+  EXPECT_EQ(cards.offsets, ContactOffsets::ignored);
+  EXPECT_EQ(cards.offset_of_section, (std::map<std::int64_t, double>{{7, -0.5}, {8, 0.25}})) << "the middle lies on the other side";
+  const auto control = [](const std::string& value) { return cards_of("*CONTROL_SHELL\n20.,0\n1.0\n0,0," + value + "\n").offsets; };
+  EXPECT_EQ(control("1"), ContactOffsets::of_shell);
+  EXPECT_EQ(control("2"), ContactOffsets::of_contact);
+  EXPECT_EQ(control("0"), ContactOffsets::ignored);
+}
+
 }  // namespace
 }  // namespace prismesh::mesh::deck
