@@ -182,7 +182,8 @@ void PanelArrangement::build(ToolContext& context, std::span<const input::MouseB
   if (document && connection.connected())
     for (auto* tool : context.tools.with<toolkit::DrawsOverPicture>()) tool->draw_over_picture(layout);
   if (!connection.connected() || ((!document || !progress.words().empty()) && !box))
-    panels::state_panel({connection.connected(), connection.socket().string(), progress.words(), progress.fraction()}, view);
+    panels::state_panel({connection.connected(), connection.socket().string(), progress.words(), progress.fraction()},
+                        input::binding_of(key_bindings(), tools::files::open_command()), layout);
   build_box(context, layout);
   cover(context, mouse, layout);
   if (!guidance.empty() && document) panels::guidance_panel(guidance, view);

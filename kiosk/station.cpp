@@ -36,7 +36,7 @@ Station::Station(const StationOptions& options, std::unique_ptr<render::Renderer
       devices(ipc::device_socket_path(options.runtime_dir), trace),
       eyes({}, devices, clock, trace),
       renderer(std::move(made)),
-      editor(options.profile, {state_file("expressions"), state_file("commands"), options.follows_others},
+      editor(options.profile, {state_file("expressions"), state_file("commands"), state_file("decks"), options.follows_others},
              {link, pen, *renderer, clock, trace}),
       screen(std::move(gui), options.mouse.in_words(), KeptArrangement(state_file("arrangement.toml")), editor),
       fixed_eyes_(options.fixed_eyes_mm.has_value()),

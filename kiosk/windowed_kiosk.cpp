@@ -122,6 +122,8 @@ Result<void> WindowedKiosk::take_button(const display::ButtonChanged& event) {
 
 Result<void> WindowedKiosk::take_key(const display::KeyChanged& event) {
   if (Result<void> settled = settle(); !settled) return settled;
+  const bool pastes = event.down && event.modifiers.ctrl && event.key == display::letter('V') && station_.screen.gui().wants_keys();
+  if (const auto text = pastes ? window_.clipboard() : std::nullopt) station_.screen.gui().set_clipboard(*text);
   station_.screen.gui().feed(event);
   edge_fed_ = dirty_ = true;
   if (!event.down) return {};
@@ -191,7 +193,13 @@ void WindowedKiosk::point() {
 
 Result<void> WindowedKiosk::settle() {
   if (!std::exchange(edge_fed_, false)) return {};
-  return station_.screen.lay_out();
+  if (Result<void> laid_out = station_.screen.lay_out(); !laid_out) return laid_out;
+  offer_copied();
+  return {};
+}
+
+void WindowedKiosk::offer_copied() {
+  if (const std::optional<std::string> copied = station_.screen.gui().take_copied()) window_.set_clipboard(*copied);
 }
 
 Result<void> WindowedKiosk::show() {
@@ -203,6 +211,7 @@ Result<void> WindowedKiosk::show() {
   const std::optional<input::Pixel> pointer = draws_pointer() ? gestures_.position() : std::nullopt;
   if (Result<void> drawn = station_.screen.draw(0, pointer, shown_moving_); !drawn) return drawn;
   if (station_.eyes.watches()) window_.finish();
+  offer_copied();
   station_.eyes.drawn(station_.eyes.watches() ? window_.last_refresh_ns() : std::nullopt);
   window_.present();
   // A picture may take longer than a wheel's steps lie apart.

@@ -25,6 +25,7 @@ class WindowedKiosk {
   void do_command(const input::Command& command);
   Result<void> settle();
   void point();
+  void offer_copied();
   void find_place() { station_.place(window_.monitor(), window_.position()); }
   /// The display's own pointer isn't woven, and some displays have none.
   bool draws_pointer() const { return station_.editor.profile().stereo() || !window_.has_pointer(); }

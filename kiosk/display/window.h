@@ -136,6 +136,10 @@ class Window {
   /// Hides or shows the display's own pointer. It isn't woven, so stereo pictures draw their own.
   virtual void show_pointer(bool shown) = 0;
   virtual void set_fullscreen(bool fullscreen) = 0;
+  /// What other programs have put on the clipboard, UTF-8; empty: nothing, or the display has none. May wait 0.2 s for its owner.
+  virtual std::optional<std::string> clipboard() { return std::nullopt; }
+  /// Offers a text to other programs, until they offer one.
+  virtual void set_clipboard(const std::string& /*text*/) {}
 };
 
 }  // namespace prismesh::kiosk::display

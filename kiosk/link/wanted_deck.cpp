@@ -88,11 +88,17 @@ void WantedDeck::not_opened(const ipc::Failed& failed, const std::filesystem::pa
   if (!was_stopped(failed) && failed.unsaved_edits.value_or(false))
     refused_ = whole;
   else
-    notices_.say(notice_of_failed_opening(failed, whole));
+    say_not_opened(failed, whole);
   if (document_.snapshot()) return;
   // What the server has open instead is shown: nobody could save it unseen.
   deck_.reset();
   ask_state();
+}
+
+void WantedDeck::say_not_opened(const ipc::Failed& failed, const std::filesystem::path& whole) {
+  notices::Notice notice = notice_of_failed_opening(failed, whole);
+  not_opened_ = NotOpened{whole, notice.text};
+  notices_.say(std::move(notice));
 }
 
 void WantedDeck::close(Then then) {

@@ -24,6 +24,12 @@ class WantedDeck final : public ConnectionListener {
   void open(const std::filesystem::path& deck, Unsaved unsaved = Unsaved::refuse);
   /// A deck that the server refused to open because of unsaved edits; each is returned once.
   std::optional<std::filesystem::path> take_refused() { return std::exchange(refused_, std::nullopt); }
+  struct NotOpened {
+    std::filesystem::path deck;
+    std::string why;  ///< as the notice says it
+  };
+  /// A deck that couldn't be opened; each is returned once. A notice tells it too.
+  std::optional<NotOpened> take_not_opened() { return std::exchange(not_opened_, std::nullopt); }
   /// `remark`: added to the notice about the saving. `then` gets the answer last.
   void save(const ipc::Save& request, const std::string& remark, Then then);
   /// Closes the document and drops its unsaved edits. `then` gets the answer.
@@ -38,11 +44,13 @@ class WantedDeck final : public ConnectionListener {
   void took_state(const ipc::DocumentState& state);
   void took_opened(const ipc::Answer& answer, const std::filesystem::path& whole, const std::string& kept);
   void not_opened(const ipc::Failed& failed, const std::filesystem::path& whole);
+  void say_not_opened(const ipc::Failed& failed, const std::filesystem::path& whole);
   void took_saved(const ipc::Saved& saved, bool becomes, const std::string& remark);
 
   std::optional<std::filesystem::path> deck_;
   bool opening_ = false;                          ///< the server was asked to open it and hasn't answered
   std::optional<std::filesystem::path> refused_;  ///< not opened because of unsaved edits
+  std::optional<NotOpened> not_opened_;
   Connection& connection_;
   FollowedDocument& document_;
   DocumentNumber& number_;

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include <imgui.h>
 #include <imgui_internal.h>
@@ -136,6 +137,8 @@ struct Gui::Impl {
   std::optional<GuiRenderer> renderer;
   TypeSizes type;
   bool laid_out = false;
+  std::string clipboard;
+  std::optional<std::string> copied;
 
   Impl() : context(ImGui::CreateContext()) { ImGui::SetCurrentContext(context); }
   Impl(const Impl&) = delete;
@@ -167,6 +170,13 @@ Result<Gui> Gui::create() {
   io.IniFilename = nullptr;
   io.LogFilename = nullptr;
   io.BackendRendererName = "prismesh";
+  io.ClipboardUserData = gui.impl_.get();
+  io.GetClipboardTextFn = [](void* state) { return static_cast<const Impl*>(state)->clipboard.c_str(); };
+  io.SetClipboardTextFn = [](void* state, const char* text) {
+    auto& impl = *static_cast<Impl*>(state);
+    impl.clipboard = text;
+    impl.copied = impl.clipboard;
+  };
   for (const auto& [theirs, ours] : kKeys) io.KeyMap[theirs] = static_cast<int>(ours);
   set_style();
   if (Result<void> type = gui.set_type(kFlatType); !type) return fail(type.error());
@@ -217,6 +227,10 @@ bool Gui::on_panel(double x, double y) const {
 bool Gui::holds_pointer() const { return ImGui::IsAnyItemActive() && ImGui::IsAnyMouseDown(); }
 
 bool Gui::wants_keys() const { return ImGui::GetIO().WantTextInput; }
+
+void Gui::set_clipboard(const std::string& text) { impl_->clipboard = text; }
+
+std::optional<std::string> Gui::take_copied() { return std::exchange(impl_->copied, std::nullopt); }
 
 void Gui::layout(display::PixelSize picture, double seconds, const std::function<void()>& build) {
   ImGuiIO& io = ImGui::GetIO();

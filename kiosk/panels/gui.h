@@ -4,6 +4,8 @@
 #include <array>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <string>
 
 #include "base/error.h"
 #include "kiosk/display/window.h"
@@ -48,6 +50,11 @@ class Gui {
   bool holds_pointer() const;
   /// A text field has the keyboard.
   bool wants_keys() const;
+
+  /// What Ctrl+V pastes into a field.
+  void set_clipboard(const std::string& text);
+  /// A text that was copied or cut from a field since the last call.
+  std::optional<std::string> take_copied();
 
   /// Lays the panels out: `build` calls ImGui. `seconds`: since the last time.
   void layout(display::PixelSize picture, double seconds, const std::function<void()>& build);

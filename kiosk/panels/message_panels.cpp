@@ -46,8 +46,8 @@ NoticeReply notice_panel(const NoticeFacts& facts, const Place& room, const Noti
   return reply;
 }
 
-void state_panel(const StateFacts& facts, const Place& room) {
-  begin_centred("State", room, ImGui::GetFontSize() * 32);
+void state_panel(const StateFacts& facts, const input::KeyBinding& open, PanelLayout& layout) {
+  begin_centred("State", layout.view(), ImGui::GetFontSize() * 32);
   if (!facts.connected) {
     ImGui::PushFont(title_font());
     ImGui::TextWrapped("The model server is not running - trying again");
@@ -64,7 +64,11 @@ void state_panel(const StateFacts& facts, const Place& room) {
     ImGui::PushFont(title_font());
     ImGui::TextUnformatted("No deck is open");
     ImGui::PopFont();
-    ImGui::TextDisabled("Ctrl+O opens one, F1 shows all keys.");
+    if (ImGui::Button("Open a deck ...")) layout.ask(open.command);
+    note_item(layout, "open a deck", "");
+    ImGui::SameLine();
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextDisabled("%s   F1 shows all keys", std::string(open.label).c_str());
   }
   ImGui::End();
 }

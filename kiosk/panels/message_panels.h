@@ -18,7 +18,8 @@ struct NoticePlace {
 enum class NoticeReply : std::uint8_t { none, read, list_warnings };
 NoticeReply notice_panel(const NoticeFacts& facts, const Place& room, const NoticePlace& place);
 
-void state_panel(const StateFacts& facts, const Place& room);
+/// `open`: the command that opens a deck; a button where none is open.
+void state_panel(const StateFacts& facts, const input::KeyBinding& open, PanelLayout& layout);
 
 /// At the top, where it is in nobody's way.
 void guidance_panel(const std::string& guidance, const Place& room);

@@ -67,6 +67,7 @@ struct OpenPanels {
 struct ToolOptions {
   std::filesystem::path expressions{};    ///< file of the entered expressions; empty: none
   std::filesystem::path commands_used{};  ///< file of the commands that were found; empty: none
+  std::filesystem::path decks_opened{};   ///< file of the decks that were opened; empty: none
   bool follows_others = false;            ///< moves together with other kiosks that do
 };
 

@@ -151,6 +151,45 @@ TEST_F(DeckFilesTest, what_cannot_be_saved_or_opened_keeps_the_edits) {
   EXPECT_TRUE(station_->kiosk().last("generation ").ends_with("changed 1"));
 }
 
+TEST_F(DeckFilesTest, a_deck_that_cannot_be_opened_is_told_in_the_box) {
+  start();
+  station_->key("ctrl+s");
+  ASSERT_FALSE(generation_after_saving().empty());
+  const std::filesystem::path missing = in_folder("missing.k");
+  enter_path("ctrl+o", missing);
+  ASSERT_FALSE(station_->kiosk().wait_for("item \"open problem\"").empty());
+  EXPECT_NE(station_->item("open problem")->state.find("missing.k"), std::string::npos);
+  EXPECT_EQ(station_->item("path")->state, missing.string()) << "one goes on with what was typed";
+  station_->settled_aim();
+  station_->show_people("open_problem");
+  const std::filesystem::path other = in_folder("other.k");
+  write_sheet(other);
+  station_->key("ctrl+a");
+  station_->type(other.string());
+  station_->key("Return");
+  EXPECT_FALSE(station_->kiosk().wait_for("document " + other.string()).empty());
+}
+
+TEST_F(DeckFilesTest, the_empty_screen_opens_a_recent_deck) {
+  station_->start_kiosk();
+  station_->settled_aim();
+  station_->key("ctrl+q");
+  EXPECT_EQ(station_->kiosk().wait_for_exit(), 0);
+  station_->kill_model_server();
+  std::filesystem::remove_all(station_->folder() / "state");
+  station_->start_model_server();
+  station_->start_empty_kiosk();
+  station_->settled_aim();
+  station_->show_people("empty");
+  station_->click_item("open a deck");
+  ASSERT_FALSE(station_->kiosk().wait_for("item \"file " + station_->deck().string()).empty());
+  station_->settled_aim();
+  station_->show_people("browser");
+  station_->key("Down");
+  station_->key("Return");
+  EXPECT_FALSE(station_->kiosk().wait_for("document " + station_->deck().string()).empty());
+}
+
 TEST_F(DeckFilesTest, a_kiosk_started_with_another_deck_asks_too) {
   start();
   const std::filesystem::path other = in_folder("other.k");

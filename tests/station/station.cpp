@@ -144,6 +144,13 @@ void Station::start_kiosk(const std::vector<std::string>& more_arguments) {
   find_window();
 }
 
+void Station::start_empty_kiosk() {
+  kiosk_.reset();
+  run_kiosk({});
+  ASSERT_FALSE(kiosk_->wait_for("picture ").empty());
+  find_window();
+}
+
 void Station::open_in_another_kiosk(const std::filesystem::path& deck) {
   kiosk_.reset();
   run_kiosk({"--open", deck.string()});

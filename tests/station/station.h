@@ -50,6 +50,8 @@ class Station {
   void set_picture_size(int width, int height) { width_ = width, height_ = height; }
   /// Opens the deck in a kiosk and waits until its picture is on the screen.
   void start_kiosk(const std::vector<std::string>& more_arguments = {});
+  /// A kiosk that asks for no deck, on a server that has none open.
+  void start_empty_kiosk();
   /// Ends the kiosk and starts one that asks for another deck; it needn't get it.
   void open_in_another_kiosk(const std::filesystem::path& deck);
   /// A kiosk that calibrates its display, in a window, with the daemon's settings file; waits for its first page.

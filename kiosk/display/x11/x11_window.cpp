@@ -14,6 +14,7 @@
 #include <X11/extensions/Xrandr.h>
 
 #include "kiosk/display/key_symbols.h"
+#include "kiosk/display/x11/x11_clipboard.h"
 #include "kiosk/display/x11/x11_monitor.h"
 
 namespace prismesh::kiosk::display::x11 {
@@ -53,6 +54,10 @@ class X11Window final : public Window {
   std::optional<std::int64_t> last_refresh_ns() override;
   void show_pointer(bool shown) override;
   void set_fullscreen(bool fullscreen) override;
+  std::optional<std::string> clipboard() override { return gone_ ? std::nullopt : clipboard_.read(); }
+  void set_clipboard(const std::string& text) override {
+    if (!gone_) clipboard_.offer(text);
+  }
 
  private:
   Result<void> create_window(const X11Options& options);
@@ -71,6 +76,7 @@ class X11Window final : public Window {
   XIC input_context_ = nullptr;
   Cursor no_pointer_ = 0;
   Atom delete_window_ = 0;
+  X11Clipboard clipboard_;
   EGLDisplay egl_ = EGL_NO_DISPLAY;
   EGLConfig config_ = nullptr;
   EGLContext context_ = EGL_NO_CONTEXT;
@@ -166,6 +172,7 @@ Result<void> X11Window::create_window(const X11Options& options) {
     XRRSelectInput(display_, root, RRScreenChangeNotifyMask | RRCrtcChangeNotifyMask | RROutputPropertyNotifyMask);
   else
     randr_events_ = -1;
+  clipboard_ = X11Clipboard(display_, window_);
   XMapWindow(display_, window_);
   XFlush(display_);
   return {};
@@ -221,6 +228,7 @@ void X11Window::translate(XEvent& event, std::vector<WindowEvent>& out) {
     monitor_changed_ = true;
     return;
   }
+  if (clipboard_.handle(event)) return;
   switch (event.type) {
     case MotionNotify: translate_motion(event.xmotion, out); break;
     case ButtonPress:

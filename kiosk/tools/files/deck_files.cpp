@@ -27,14 +27,14 @@ std::vector<Question::Choice> unsaved_choices(const std::string& stay) {
 }
 
 /// "the file", "3 files": what a button speaks of.
-std::string counted(std::size_t count, const char* one, const char* several) {
+std::string one_or_several(std::size_t count, const char* one, const char* several) {
   return count == 1 ? std::string(one) : fmt::format("{} {}", count, several);
 }
 
 /// What the button does that writes all the same.
 std::string doing(const ipc::SaveWould& would) {
-  const std::string folders = would.make.empty() ? "" : "make " + counted(would.make.size(), "the folder", "folders");
-  const std::string files = would.replace.empty() ? "" : "Replace " + counted(would.replace.size(), "the file", "files");
+  const std::string folders = would.make.empty() ? "" : "make " + one_or_several(would.make.size(), "the folder", "folders");
+  const std::string files = would.replace.empty() ? "" : "Replace " + one_or_several(would.replace.size(), "the file", "files");
   if (files.empty()) return "M" + folders.substr(1);
   return folders.empty() ? files : files + ", " + folders;
 }

@@ -1,6 +1,7 @@
 #include "kiosk/tools/files/files_tool.h"
 
 #include <array>
+#include <filesystem>
 
 #include "kiosk/toolkit/open_panels.h"
 
@@ -14,6 +15,7 @@ using input::Menu;
 using display::letter;
 
 constexpr std::string_view kName = "files";
+constexpr std::size_t kRecentDecks = 8;
 
 enum class FilesCommand : std::uint8_t { open, save, save_as, save_copy, quit };
 
@@ -34,6 +36,7 @@ constexpr std::array kKeys = {
 std::span<const KeyBinding> keys() { return kKeys; }
 
 Command quit_command() { return command_of(FilesCommand::quit); }
+Command open_command() { return command_of(FilesCommand::open); }
 Command save_command() { return command_of(FilesCommand::save); }
 
 std::string_view FilesTool::name() const { return kName; }
@@ -41,7 +44,10 @@ std::string_view FilesTool::name() const { return kName; }
 void FilesTool::command(std::uint8_t number, const toolkit::Pointer&) {
   const auto dialog = [&](PathDialog kind) { toolkit::open_dialog(context_, this, static_cast<int>(kind)); };
   switch (static_cast<FilesCommand>(number)) {
-    case FilesCommand::open: dialog(PathDialog::open); break;
+    case FilesCommand::open:
+      not_opened_.reset();
+      dialog(PathDialog::open);
+      break;
     case FilesCommand::save: deck_files_.save(save_remark()); break;
     case FilesCommand::save_as:
       if (context_.shown.snapshot) dialog(PathDialog::save_as);
@@ -60,7 +66,23 @@ Result<void> FilesTool::prepare() {
   deck_files_.follow();
   context_.quits = deck_files_.quits();
   if (question() != nullptr) toolkit::set_cover(context_, toolkit::Cover::none);
+  if (auto failed = context_.link.deck.take_not_opened(); failed && failed->deck == asked_) {
+    // The box comes back with what was tried, and says what is wrong with it: the notice would say it twice.
+    if (!context_.notices.empty() && context_.notices.front().text == failed->why) context_.notices.read();
+    entry_.typed = entry_.begun = failed->deck.string();  // the box may not have been away for a picture
+    not_opened_ = std::move(failed);
+    toolkit::open_dialog(context_, this, static_cast<int>(PathDialog::open));
+  }
   return {};
+}
+
+/// The deck is open: the next time it is one of the recent ones.
+void FilesTool::document_changed() {
+  asked_.clear();
+  const auto& shown = context_.shown.snapshot;
+  if (!shown) return;
+  const ipc::SnapshotInfo& info = shown->info();
+  decks_.add(line_of({info.document, info.counts.ok + info.counts.warn + info.counts.fail, info.nodes, info.parts.size()}));
 }
 
 void FilesTool::reply(panels::Reply reply) {
@@ -75,14 +97,24 @@ std::string FilesTool::save_remark() const {
 void FilesTool::draw_dialog(int kind, bool opened, panels::PanelLayout& layout) {
   const auto dialog = static_cast<PathDialog>(kind);
   const std::string deck = context_.shown.snapshot ? context_.shown.snapshot->info().document : std::string();
-  const std::optional<std::string> entered = path_box({dialog, opened, deck}, layout.view(), entry_);
+  PathFacts facts{dialog, opened, deck, {}, {}, recent_decks(decks_.entries(), kRecentDecks)};
+  if (not_opened_ && dialog == PathDialog::open) {
+    facts.tried = not_opened_->deck.string();
+    facts.problem = not_opened_->why;
+  }
+  const std::optional<std::string> entered = path_box(facts, entry_, layout);
   if (!entered) return;
   layout.ask([this, dialog, path = *entered] { enter(dialog, path); });
   layout.ask([this] { toolkit::close_dialog(context_); });
 }
 
 void FilesTool::enter(PathDialog dialog, const std::string& path) {
-  if (dialog == PathDialog::open) return deck_files_.open(path);
+  if (dialog == PathDialog::open) {
+    std::error_code ignored;
+    asked_ = std::filesystem::absolute(path, ignored).string();
+    not_opened_.reset();
+    return deck_files_.open(path);
+  }
   const auto how = dialog == PathDialog::save_copy ? DeckFiles::Elsewhere::copy : DeckFiles::Elsewhere::becomes;
   deck_files_.save_elsewhere(path, how, save_remark());
 }

@@ -1,0 +1,109 @@
+#include "kiosk/tools/files/browse.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <filesystem>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "kiosk/panels/text.h"
+
+namespace prismesh::kiosk::tools::files {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMostEntries = 20000;
+
+std::string lower_case(std::string_view text) {
+  std::string lower(text);
+  std::ranges::transform(lower, lower.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  return lower;
+}
+
+std::string size_words(std::uintmax_t bytes) {
+  if (bytes < 1000) return fmt::format("{} B", bytes);
+  constexpr std::array<const char*, 4> kUnits{"kB", "MB", "GB", "TB"};
+  double size = static_cast<double>(bytes) / 1000;
+  std::size_t unit = 0;
+  for (; size >= 1000 && unit + 1 < kUnits.size(); ++unit) size /= 1000;
+  return fmt::format("{:.{}f} {}", size, size < 10 ? 1 : 0, kUnits[unit]);
+}
+
+}  // namespace
+
+bool is_deck_name(std::string_view name) {
+  std::string lower = lower_case(name);
+  for (const std::string_view packed : {".gz", ".zst"})
+    if (lower.ends_with(packed)) lower.resize(lower.size() - packed.size());
+  constexpr std::array<std::string_view, 10> kEndings{".k", ".key", ".dyn", ".inp", ".bdf", ".nas", ".dat", ".fem", ".rad", ".inc"};
+  return std::ranges::any_of(kEndings, [&](std::string_view ending) { return lower.ends_with(ending); });
+}
+
+Browsed browse(const std::string& typed, bool all) {
+  const std::size_t slash = typed.rfind('/');
+  const std::string folder = slash == std::string::npos ? "" : typed.substr(0, slash + 1);
+  const std::string piece = lower_case(slash == std::string::npos ? typed : typed.substr(slash + 1));
+  Browsed found;
+  std::error_code error;
+  std::vector<BrowseRow> holding;
+  std::size_t read = 0;
+  fs::directory_iterator entry(folder.empty() ? "." : folder, error);
+  if (error) {
+    found.problem = fmt::format("{}: {}", folder.empty() ? "." : folder, error.message());
+    return found;
+  }
+  for (const fs::directory_iterator end; !error && entry != end; entry.increment(error)) {
+    if (++read > kMostEntries) {
+      found.cut = true;
+      break;
+    }
+    const std::string name = entry->path().filename().string(), lower = lower_case(name);
+    if (name.starts_with('.') && !piece.starts_with('.')) continue;
+    std::error_code unreadable;
+    const bool is_folder = entry->is_directory(unreadable);
+    const bool is_deck = !is_folder && is_deck_name(name);
+    (is_folder ? found.folders : is_deck ? found.decks : found.others) += 1;
+    if (!is_folder && !is_deck && !all) continue;
+    BrowseRow row{folder + name + (is_folder ? "/" : ""), name + (is_folder ? "/" : ""), "", is_folder};
+    if (!is_folder) {
+      const std::uintmax_t size = entry->file_size(unreadable);
+      row.detail = unreadable ? "" : size_words(size);
+    }
+    if (lower.starts_with(piece))
+      found.rows.push_back(std::move(row));
+    else if (lower.find(piece) != std::string::npos)
+      holding.push_back(std::move(row));
+  }
+  if (error) found.problem = fmt::format("{}: {}", folder, error.message());
+  if (found.rows.empty()) found.rows = std::move(holding);
+  std::ranges::sort(found.rows, [](const BrowseRow& a, const BrowseRow& b) { return a.folder != b.folder ? a.folder : a.words < b.words; });
+  return found;
+}
+
+std::string line_of(const RecentDeck& deck) { return fmt::format("{} {} {} {}", deck.shells, deck.nodes, deck.parts, deck.path); }
+
+RecentDeck recent_from(std::string_view line) {
+  RecentDeck deck;
+  for (std::uint64_t* number : {&deck.shells, &deck.nodes, &deck.parts}) {
+    const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), *number);
+    const auto read = static_cast<std::size_t>(end - line.data());
+    if (error != std::errc() || read >= line.size() || line[read] != ' ') return {};
+    line.remove_prefix(read + 1);
+  }
+  deck.path = line;
+  return deck;
+}
+
+std::vector<RecentDeck> recent_decks(std::span<const std::string> lines, std::size_t limit) {
+  std::vector<RecentDeck> decks;
+  for (auto line = lines.rbegin(); line != lines.rend() && decks.size() < limit; ++line) {
+    RecentDeck deck = recent_from(*line);
+    if (!deck.path.empty() && std::ranges::find(decks, deck.path, &RecentDeck::path) == decks.end()) decks.push_back(std::move(deck));
+  }
+  return decks;
+}
+
+}  // namespace prismesh::kiosk::tools::files

@@ -1,0 +1,198 @@
+// Choosing decks: what a typed path can go on with, the recent decks, and the box.
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "kiosk/tools/files/browse.h"
+#include "kiosk/tools/files/path_box.h"
+#include "tests/kiosk/gui_test.h"
+
+namespace prismesh::kiosk::tools::files {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+class Folder {
+ public:
+  Folder() {
+    std::string name = (fs::temp_directory_path() / "prismesh-browse-XXXXXX").string();
+    path_ = ::mkdtemp(name.data());
+    fs::create_directories(path_ / "includes" / "deep");
+    fs::create_directory(path_ / ".hidden");
+    for (const char* file : {"car.k", "CAR_v2.KEY", "door.rad", "sill.k.gz", "notes.txt", ".secret.k", "old car.k"})
+      std::ofstream(path_ / file) << "*KEYWORD\n";
+  }
+  ~Folder() { fs::remove_all(path_); }
+  std::string operator/(const std::string& name) const { return (path_ / name).string(); }
+
+ private:
+  fs::path path_;
+};
+
+std::vector<std::string> words(const Browsed& found) {
+  std::vector<std::string> all;
+  for (const BrowseRow& row : found.rows) all.push_back(row.words);
+  return all;
+}
+
+TEST(Browse, lists_folders_then_decks_and_counts_the_rest) {
+  const Folder folder;
+  const Browsed found = browse(folder / "", false);
+  EXPECT_THAT(words(found), ElementsAre("includes/", "CAR_v2.KEY", "car.k", "door.rad", "old car.k", "sill.k.gz"));
+  EXPECT_EQ(found.folders, 1U);
+  EXPECT_EQ(found.decks, 5U);
+  EXPECT_EQ(found.others, 1U);
+  EXPECT_EQ(found.rows[1].detail, "9 B");
+  EXPECT_THAT(words(browse(folder / "", true)), testing::Contains("notes.txt"));
+}
+
+TEST(Browse, a_piece_is_the_beginning_without_case_else_any_part_of_a_name) {
+  const Folder folder;
+  EXPECT_THAT(words(browse(folder / "car", false)), ElementsAre("CAR_v2.KEY", "car.k"));
+  EXPECT_THAT(words(browse(folder / "LL.K", false)), ElementsAre("sill.k.gz"));
+  EXPECT_THAT(words(browse(folder / ".", false)), testing::Contains(".secret.k"));
+  EXPECT_THAT(words(browse(folder / "xyz", false)), IsEmpty());
+}
+
+TEST(Browse, says_what_is_wrong_with_a_folder) {
+  const Folder folder;
+  EXPECT_THAT(browse(folder / "missing/x", false).problem, HasSubstr("missing/: No such file"));
+  EXPECT_THAT(browse(folder / "car.k/x", false).problem, HasSubstr("Not a directory"));
+  EXPECT_THAT(browse(std::string("/\0/x", 4), false).rows, testing::Not(testing::Contains(testing::Field(&BrowseRow::words, "x"))));
+}
+
+TEST(RecentDecks, are_kept_by_path_the_newest_first) {
+  const std::vector<std::string> lines{line_of({"/d/a b.k", 10, 20, 2}), line_of({"/d/c.k", 1, 2, 1}), "nonsense", "1 2 x /d",
+                                       line_of({"/d/a b.k", 11, 21, 2})};
+  EXPECT_THAT(recent_decks(lines, 8), ElementsAre(RecentDeck{"/d/a b.k", 11, 21, 2}, RecentDeck{"/d/c.k", 1, 2, 1}));
+  EXPECT_EQ(recent_decks(lines, 1).size(), 1U);
+  EXPECT_EQ(recent_from("").path, "");
+  EXPECT_EQ(recent_from("99999999999999999999999 1 1 /d").path, "");
+}
+
+class PathBox : public panels::GuiTest {
+ protected:
+  std::optional<std::string> lay_out() {
+    panels::PanelLayout layout{{1000, 640}};
+    std::optional<std::string> entered;
+    gui_->layout(layout.picture, 0.016, [&] { entered = path_box(facts_, entry_, layout); });
+    facts_.opened = false;
+    items_ = std::move(layout.items);
+    return entered;
+  }
+  void open(const std::string& deck) {
+    facts_.opened = true;
+    facts_.deck = deck;
+    for (int round = 0; round < 4; ++round) lay_out();
+    ASSERT_TRUE(gui_->wants_keys()) << "one types at once";
+  }
+  std::optional<std::string> press(display::Key key) {
+    gui_->feed(display::KeyChanged{key, true, false, {}});
+    const auto down = lay_out();
+    gui_->feed(display::KeyChanged{key, false, false, {}});
+    const auto up = lay_out();
+    for (int round = 0; round < 3; ++round) lay_out();
+    return down ? down : up;
+  }
+  void type(const std::string& text) {
+    gui_->feed(display::TextTyped{text});
+    lay_out();
+  }
+  std::optional<std::string> click(const std::string& name) {
+    const auto item = std::ranges::find(items_, "file " + name, &panels::ScreenItem::name);
+    if (item == items_.end()) return "no row " + name;
+    const double x = item->place.x + 30, y = item->place.y + 4;
+    gui_->feed(display::PointerMoved{x, y, {}});
+    lay_out();
+    gui_->feed(display::ButtonChanged{display::MouseButton::left, true, x, y, {}});
+    lay_out();
+    gui_->feed(display::ButtonChanged{display::MouseButton::left, false, x, y, {}});
+    const auto entered = lay_out();
+    for (int round = 0; round < 4; ++round) lay_out();
+    return entered;
+  }
+
+  Folder folder_;
+  PathFacts facts_;
+  PathEntry entry_;
+  std::vector<panels::ScreenItem> items_;
+};
+
+TEST_F(PathBox, is_used_by_arrow_keys_tab_and_enter) {
+  open(folder_ / "car.k");
+  EXPECT_EQ(entry_.typed, folder_ / "");
+  press(display::Key::down);  // the folder above
+  press(display::Key::down);
+  EXPECT_EQ(press(display::Key::enter), std::nullopt) << "a folder is gone into";
+  EXPECT_EQ(entry_.typed, folder_ / "includes/");
+  press(display::Key::down);
+  EXPECT_EQ(press(display::Key::enter), std::nullopt);
+  EXPECT_EQ(entry_.typed, folder_ / "") << "and out of";
+  type("do");
+  press(display::Key::tab);
+  EXPECT_EQ(entry_.typed, folder_ / "door.rad");
+  EXPECT_EQ(press(display::Key::enter), folder_ / "door.rad");
+}
+
+TEST_F(PathBox, is_used_by_clicks) {
+  open(folder_ / "car.k");
+  EXPECT_EQ(click(folder_ / "includes/"), std::nullopt);
+  EXPECT_EQ(entry_.typed, folder_ / "includes/");
+  EXPECT_EQ(click(folder_ / ""), std::nullopt) << "up again";
+  EXPECT_EQ(click(folder_ / "old car.k"), folder_ / "old car.k");
+}
+
+TEST_F(PathBox, offers_recent_decks_until_something_is_typed_and_pastes) {
+  facts_.recent = {{folder_ / "door.rad", 1200, 1300, 4}};
+  open("");
+  EXPECT_EQ(entry_.typed, folder_ / "") << "where the last deck was";
+  press(display::Key::down);
+  EXPECT_EQ(press(display::Key::enter), folder_ / "door.rad");
+  open("");
+  gui_->feed(display::KeyChanged{display::letter('A'), true, false, {false, true, false}});
+  lay_out();
+  gui_->feed(display::KeyChanged{display::letter('A'), false, false, {}});
+  lay_out();
+  gui_->set_clipboard(folder_ / "sill.k.gz");
+  gui_->feed(display::KeyChanged{display::letter('V'), true, false, {false, true, false}});
+  lay_out();
+  gui_->feed(display::KeyChanged{display::letter('V'), false, false, {}});
+  lay_out();
+  EXPECT_EQ(entry_.typed, folder_ / "sill.k.gz");
+}
+
+TEST_F(PathBox, says_in_place_what_could_not_be_opened) {
+  facts_.tried = folder_ / "gone.k";
+  facts_.problem = "gone.k was not opened: no such file";
+  open(folder_ / "car.k");
+  EXPECT_EQ(entry_.typed, folder_ / "gone.k") << "one goes on with what was tried";
+  EXPECT_NE(std::ranges::find(items_, "open problem", &panels::ScreenItem::name), items_.end());
+  press(display::Key::backspace);
+  EXPECT_EQ(std::ranges::find(items_, "open problem", &panels::ScreenItem::name), items_.end());
+}
+
+TEST_F(PathBox, a_save_takes_a_files_name_and_keeps_typing) {
+  facts_.dialog = PathDialog::save_copy;
+  open(folder_ / "car.k");
+  EXPECT_EQ(entry_.typed, folder_ / "car.k");
+  EXPECT_EQ(click(folder_ / "car.k"), std::nullopt) << "nothing is replaced by a click";
+}
+
+TEST_F(PathBox, lays_out_only_the_rows_in_sight_of_a_large_folder) {
+  for (int i = 0; i < 3000; ++i) std::ofstream(folder_ / ("part_" + std::to_string(i) + ".k"));
+  open(folder_ / "car.k");
+  const auto rows = std::ranges::count_if(items_, [](const panels::ScreenItem& item) { return item.name.starts_with("file "); });
+  EXPECT_LT(rows, 60);
+  EXPECT_GT(rows, 5);
+}
+
+}  // namespace
+}  // namespace prismesh::kiosk::tools::files
