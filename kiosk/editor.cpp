@@ -11,6 +11,7 @@
 #include "kiosk/toolkit/edits.h"
 #include "kiosk/toolkit/open_panels.h"
 #include "kiosk/toolkit/picking.h"
+#include "kiosk/tools/find/find_tool.h"
 
 namespace prismesh::kiosk {
 
@@ -186,6 +187,11 @@ void Editor::panel_action(const std::function<void()>& action) {
 void Editor::panel_command(const input::Command& command, const Pointer& pointer) {
   if (context_.open.cover == Cover::menu) toolkit::set_cover(context_, Cover::none);
   this->command(command, pointer);
+}
+
+void Editor::find(const std::string& begun) {
+  context_.open.begun = begun;
+  command(tools::find::find_command(), std::nullopt);
 }
 
 bool Editor::reply_by_key(display::Key key) {

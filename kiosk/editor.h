@@ -56,6 +56,8 @@ class Editor {
   /// A panel asks for a command.
   void panel_command(const input::Command& command, const toolkit::Pointer& pointer = std::nullopt);
 
+  /// Opens the search with a text that was typed beside a field.
+  void find(const std::string& begun);
   bool dialog_open() const { return context_.open.dialog.owner != nullptr || tools_.asking() != nullptr; }
   /// Replies to the question that is asked, if the key does that.
   bool reply_by_key(display::Key key);

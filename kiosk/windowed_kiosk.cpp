@@ -21,10 +21,13 @@ namespace {
 constexpr std::int64_t kCaretBlinkNs = 300'000'000;  ///< the caret of a text field blinks without any event
 constexpr std::int64_t kWheelRestNs = 250'000'000;   ///< the wheel counts as still this long after its last step
 constexpr std::int64_t kPointerRestNs = 60'000'000;  ///< the pointer rests this long after its last move
+constexpr std::int64_t kWordNs = 220'000'000;       ///< letters of a word come faster than that
 constexpr std::int64_t kForEverNs = -1;
 constexpr std::size_t kManyShells = 200'000;            ///< a picture of more at rest may be too slow while the hand moves something
 constexpr std::int64_t kDaemonTriesNs = 1'000'000'000;  ///< between two attempts to reach a missing device daemon, or the pen's process
 constexpr std::int64_t kPenLookNs = 8'000'000;          ///< between two looks at a pen, which moves without a message
+
+char lower(display::Key letter) { return static_cast<char>(static_cast<int>(letter) - 'A' + 'a'); }
 
 std::int64_t shorter(std::int64_t a, std::int64_t b) { return a < 0 ? b : b < 0 ? a : std::min(a, b); }
 
@@ -50,6 +53,8 @@ Result<void> WindowedKiosk::run() {
     if (Result<void> turned = station_.turn(); !turned) return turned;
     if (const auto& model = station_.link.document.snapshot()) watch_.draws(model->shell_count());
     point();
+    if (held_ && station_.clock.now_ns() >= held_->fires_ns)
+      if (Result<void> fired = fire_held(); !fired) return fired;
     const Result<bool> drawn = beat();
     if (!drawn) return fail(drawn.error());
     if (*drawn) watch_.shown();
@@ -111,6 +116,7 @@ Result<void> WindowedKiosk::take(const display::WindowEvent& event) {
 }
 
 Result<void> WindowedKiosk::take_button(const display::ButtonChanged& event) {
+  if (Result<void> fired = fire_held(); !fired) return fired;
   if (Result<void> settled = settle(); !settled) return settled;
   station_.screen.gui().feed(event);
   edge_fed_ = dirty_ = true;
@@ -128,6 +134,7 @@ Result<void> WindowedKiosk::take_key(const display::KeyChanged& event) {
   edge_fed_ = dirty_ = true;
   if (!event.down) return {};
   swallow_text_ = false;
+  if (station_.editor.dialog_open() || station_.screen.gui().wants_keys()) word_.clear();  // it is the field's
   if (!event.repeat && !event.modifiers.ctrl && !event.modifiers.alt && station_.editor.reply_by_key(event.key)) {
     swallow_text_ = true;
     return {};
@@ -140,6 +147,9 @@ Result<void> WindowedKiosk::take_key(const display::KeyChanged& event) {
       binding->command == command_of(EditorCommand::cancel) || binding->command == command_of(EditorCommand::stop_and_keep);
   // While a path is typed the keyboard is the text field's.
   if (station_.editor.dialog_open() ? !cancels : station_.screen.gui().wants_keys()) return {};
+  const Result<bool> taken = take_letter(event, *binding);
+  if (!taken) return fail(taken.error());
+  if (*taken) return {};
   gestures_.forget_click();
   if (station_.screen.gui().popup_open()) {
     station_.screen.gui().close_popups();
@@ -169,13 +179,47 @@ Result<void> WindowedKiosk::take_text(const display::TextTyped& event) {
   return {};
 }
 
-void WindowedKiosk::do_command(const input::Command& command) {
+/// Plain letters: those that edit are held until it is known that no word is being typed, which goes to the search. True: nothing is left
+/// to do.
+Result<bool> WindowedKiosk::take_letter(const display::KeyChanged& event, const input::KeyBinding& binding) {
+  const bool letter = event.key >= display::letter('A') && event.key <= display::letter('Z');
+  const bool plain = letter && !event.modifiers.ctrl && !event.modifiers.alt && !event.modifiers.shift;
+  const std::int64_t now = station_.clock.now_ns();
+  const bool follows = plain && !word_.empty() && word_.back() != lower(event.key) && now - last_letter_ns_ < kWordNs;
+  if (!follows) word_.clear();
+  last_letter_ns_ = now;
+  const bool edits = binding.asks_for_edit() && !binding.opens_field();
+  const bool word = follows && held_;
+  if (plain && !word) word_ += lower(event.key);
+  if (word) {
+    held_.reset();
+    station_.editor.find(std::exchange(word_, {}));  // this letter comes as text
+    if (Result<void> given = give_field_the_keyboard(); !given) return fail(given.error());
+    return true;
+  }
+  if (Result<void> fired = fire_held(); !fired) return fail(fired.error());
+  if (!plain || event.repeat || !edits) return false;
+  held_ = HeldLetter{&binding, pointer_on_picture(), now + kWordNs};
+  return true;
+}
+
+Result<void> WindowedKiosk::fire_held() {
+  const std::optional<HeldLetter> held = std::exchange(held_, std::nullopt);
+  if (!held) return {};
+  gestures_.forget_click();
+  do_command(held->binding->command, held->pointer);
+  return {};
+}
+
+void WindowedKiosk::do_command(const input::Command& command) { do_command(command, pointer_on_picture()); }
+
+void WindowedKiosk::do_command(const input::Command& command, const std::optional<input::Pixel>& pointer) {
   if (command == command_of(EditorCommand::fullscreen))
     window_.set_fullscreen(fullscreen_ = !fullscreen_);
   else if (command == command_of(EditorCommand::rearm))
     station_.devices.rearm();
   else
-    station_.editor.command(command, pointer_on_picture());
+    station_.editor.command(command, pointer);
 }
 
 std::optional<input::Pixel> WindowedKiosk::pointer_on_picture() const {
@@ -244,6 +288,7 @@ std::int64_t WindowedKiosk::patience_ns() const {
   if (stale() || station_.eyes.watches()) patience = shorter(patience, std::max<std::int64_t>(0, station_.eyes.next_look_ns() - now));
   if (station_.screen.gui().wants_keys()) patience = shorter(patience, kCaretBlinkNs);
   if (const auto report = watch_.next_ns()) patience = shorter(patience, std::max<std::int64_t>(0, *report - now));
+  if (held_) patience = shorter(patience, std::max<std::int64_t>(0, held_->fires_ns - now));
   if (rests_ns_ && !gestures_.dragging()) patience = shorter(patience, std::max<std::int64_t>(0, *rests_ns_ - now));
   if (shown_moving_ && !gestures_.dragging()) patience = shorter(patience, std::max<std::int64_t>(0, wheel_rest_ns_ - now));
   return patience;

@@ -23,6 +23,9 @@ class WindowedKiosk {
   Result<void> take_text(const display::TextTyped& event);
   Result<void> give_field_the_keyboard();
   void do_command(const input::Command& command);
+  void do_command(const input::Command& command, const std::optional<input::Pixel>& pointer);
+  Result<bool> take_letter(const display::KeyChanged& event, const input::KeyBinding& binding);
+  Result<void> fire_held();
   Result<void> settle();
   void point();
   void offer_copied();
@@ -50,6 +53,15 @@ class WindowedKiosk {
   Station& station_;
   input::Gestures gestures_;
   bool swallow_text_ = false;  ///< the text of the key that opened a field is dropped
+  /// A plain letter that edits: it waits whether another one makes a word of it, which is typed beside a field.
+  struct HeldLetter {
+    const input::KeyBinding* binding = nullptr;
+    std::optional<input::Pixel> pointer;
+    std::int64_t fires_ns = 0;
+  };
+  std::optional<HeldLetter> held_;
+  std::string word_;  ///< the plain letters that came one soon after the other
+  std::int64_t last_letter_ns_ = 0;
   bool edge_fed_ = false;      ///< the panels haven't handled a press or release yet
   bool dirty_ = true;
   bool fullscreen_ = false;

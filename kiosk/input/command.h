@@ -24,6 +24,7 @@ enum KeyTraits : std::uint8_t {
   kPlainKey = 0,
   kAsksForEdit = 1,  ///< edits the model, the selection or the parts' states, or begins to
   kRepeats = 2,      ///< repeats while the key is held down
+  kOpensField = 8,   ///< only opens a field that is typed into
   kAtPointer = 4,    ///< acts on what is under the pointer: stands in the menu there
 };
 
@@ -38,6 +39,7 @@ struct KeyBinding {
   int traits = kPlainKey;    ///< of KeyTraits
 
   bool asks_for_edit() const { return (traits & kAsksForEdit) != 0; }
+  bool opens_field() const { return (traits & kOpensField) != 0; }
   bool at_pointer() const { return (traits & kAtPointer) != 0; }
   bool repeats() const { return (traits & kRepeats) != 0; }
 };

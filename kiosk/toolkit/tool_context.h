@@ -60,6 +60,7 @@ struct OpenPanels {
   Tool* in_hand = nullptr;  ///< whose panel and options are shown; null: those of `usual`
   Tool* usual = nullptr;    ///< the tool that selects
   Dialog dialog;
+  std::string begun{};                    ///< what the search begins with, the next time it is opened
   std::optional<input::Pixel> menu_at{};  ///< where the menu of what is under the pointer was asked for
   Cover cover = Cover::none;
 };

@@ -179,10 +179,19 @@ TEST_F(PathBox, says_in_place_what_could_not_be_opened) {
   EXPECT_EQ(std::ranges::find(items_, "open problem", &panels::ScreenItem::name), items_.end());
 }
 
+TEST(CopyName, is_beside_the_deck_and_new) {
+  const Folder folder;
+  EXPECT_EQ(copy_name(folder / "car.k"), folder / "car_copy.k");
+  std::ofstream(folder / "car_copy.k") << "x";
+  EXPECT_EQ(copy_name(folder / "car.k"), folder / "car_copy_2.k");
+  EXPECT_EQ(copy_name(folder / "sill.k.gz"), folder / "sill_copy.k.gz");
+  EXPECT_EQ(copy_name(folder / "plain"), folder / "plain_copy");
+}
+
 TEST_F(PathBox, a_save_takes_a_files_name_and_keeps_typing) {
   facts_.dialog = PathDialog::save_copy;
   open(folder_ / "car.k");
-  EXPECT_EQ(entry_.typed, folder_ / "car.k");
+  EXPECT_EQ(entry_.typed, folder_ / "car_copy.k") << "Enter must not replace the deck";
   EXPECT_EQ(click(folder_ / "car.k"), std::nullopt) << "nothing is replaced by a click";
 }
 

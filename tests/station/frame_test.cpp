@@ -180,6 +180,25 @@ TEST_F(FrameTest, a_command_is_found_by_its_words_and_carried_out) {
   station_->show_people("find");
 }
 
+TEST_F(FrameTest, a_word_typed_beside_a_field_edits_nothing_and_goes_to_the_search) {
+  station_->start_kiosk();
+  station_->select_middle();
+  station_->settled_aim();
+  const std::string generation = station_->kiosk().last("generation ");
+  for (const char* word : {"hood", "grow", "fork", "body"}) {
+    station_->kiosk().skip_lines();
+    station_->type(word);
+    EXPECT_FALSE(station_->kiosk().wait_for("item \"find field\"").empty()) << word;
+    station_->key("Escape");
+    station_->settled_aim();
+  }
+  EXPECT_EQ(station_->kiosk().last("generation "), generation) << "nothing was hidden, grown or inverted";
+  station_->kiosk().skip_lines();
+  for (int of_two = 0; of_two < 2; ++of_two) station_->key("g");
+  EXPECT_FALSE(station_->kiosk().wait_for("generation ").empty());
+  EXPECT_FALSE(station_->kiosk().wait_for("generation ").empty()) << "the same letter twice is that key twice";
+}
+
 TEST_F(FrameTest, an_id_is_flown_to_and_marked) {
   station_->start_kiosk();
   const std::int64_t id = nodes_.begin()->first;

@@ -42,6 +42,24 @@ bool is_deck_name(std::string_view name) {
   return std::ranges::any_of(kEndings, [&](std::string_view ending) { return lower.ends_with(ending); });
 }
 
+std::string copy_name(const std::string& deck) {
+  const fs::path path(deck);
+  std::string name = path.filename().string(), ending;
+  for (int endings = 0; endings < 2; ++endings) {  // ".k.gz" is one
+    const std::size_t point = name.rfind('.');
+    if (point == std::string::npos || point == 0) break;
+    ending.insert(0, name.substr(point));
+    name.resize(point);
+    if (ending != ".gz" && ending != ".zst") break;
+  }
+  std::error_code ignored;
+  for (int number = 1; number < 1000; ++number) {
+    const fs::path copy = path.parent_path() / (name + "_copy" + (number > 1 ? fmt::format("_{}", number) : "") + ending);
+    if (!fs::exists(copy, ignored)) return copy.string();
+  }
+  return deck;
+}
+
 Browsed browse(const std::string& typed, bool all) {
   const std::size_t slash = typed.rfind('/');
   const std::string folder = slash == std::string::npos ? "" : typed.substr(0, slash + 1);

@@ -32,6 +32,9 @@ Browsed browse(const std::string& typed, bool all);
 /// Whether a file's name is a deck's: by its ending, packed or not.
 bool is_deck_name(std::string_view name);
 
+/// Beside a deck, the first name for a copy that isn't there yet: "car_copy.k", "car_copy_2.k". Endings of packed decks stay.
+std::string copy_name(const std::string& deck);
+
 /// A deck that was open before.
 struct RecentDeck {
   std::string path;

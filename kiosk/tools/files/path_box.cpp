@@ -63,6 +63,7 @@ const char* title_of(PathDialog dialog) {
 std::string begun_for(const PathFacts& facts) {
   if (!facts.tried.empty()) return facts.tried;
   const std::filesystem::path current(facts.deck);
+  if (facts.dialog == PathDialog::save_copy) return copy_name(facts.deck);
   if (facts.dialog != PathDialog::open) return current.string();
   if (!facts.deck.empty()) return (current.parent_path() / "").string();
   if (!facts.recent.empty()) return (std::filesystem::path(facts.recent.front().path).parent_path() / "").string();

@@ -47,6 +47,7 @@ std::string_view FindTool::name() const { return kName; }
 
 void FindTool::command(std::uint8_t, const toolkit::Pointer&) {
   entry_ = {};
+  entry_.typed = std::exchange(context_.open.begun, {});
   found_.reset();
   toolkit::open_dialog(context_, this);
 }

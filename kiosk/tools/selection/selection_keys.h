@@ -11,7 +11,7 @@ inline constexpr std::array kKeys = {
     input::KeyBinding{display::Key::f2, false, false, command_of(SelectionCommand::take_in_hand), input::Menu::select, "F2",
                       "take the tool that selects in hand"},
     input::KeyBinding{display::letter('E'), false, false, command_of(SelectionCommand::expression), input::Menu::select, "E",
-                      "select by an id expression", input::kAsksForEdit},
+                      "select by an id expression", input::kAsksForEdit | input::kOpensField},
     input::KeyBinding{display::letter('L'), false, false, command_of(SelectionCommand::outline_kind), input::Menu::select, "L",
                       "draw outlines as a lasso, or as rectangles"},
     input::KeyBinding{display::letter('V'), false, false, command_of(SelectionCommand::toggle_through), input::Menu::select, "V",

@@ -9,7 +9,7 @@ namespace prismesh::kiosk::tools::shaping {
 
 inline constexpr std::array kKeys = {
     input::KeyBinding{display::letter('N'), false, false, command_of(ShapingCommand::type_number), input::Menu::shape, "N",
-                      "type how far to lift, slide, move or turn", input::kAsksForEdit},
+                      "type how far to lift, slide, move or turn", input::kAsksForEdit | input::kOpensField},
     input::KeyBinding{display::letter('N'), false, true, command_of(ShapingCommand::next_handle), input::Menu::shape, "Shift+N",
                       "what typed numbers do: lift, slide, move"},
     input::KeyBinding{display::letter('A'), false, false, command_of(ShapingCommand::pick_axis), input::Menu::shape, "A",
