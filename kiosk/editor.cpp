@@ -46,6 +46,12 @@ void Editor::set_room(const render::PixelRect& room) {
 }
 
 void Editor::point_at(const Pointer& pointer) {
+  constexpr double kLeavesPixels = 40;  ///< farther from where it was the pointer looks at something else than the edit
+  link::LinkNotices& told = context_.link.notices;
+  if (pointer && !told.result().empty()) {
+    if (std::exchange(result_seen_, told.results()) != told.results()) result_at_ = *pointer;
+    if ((*pointer - result_at_).norm() > kLeavesPixels) told.forget_result(), ++context_.changes;
+  }
   toolkit::PointedAt found = toolkit::pointed_at(context_, pointer);
   const bool same = found.words == context_.pointed.words;
   context_.pointed = std::move(found);

@@ -85,6 +85,8 @@ class Editor {
   toolkit::ToolSet tools_;
   toolkit::ToolContext context_;
   std::uint64_t link_changes_ = 0;  ///< followed so far
+  std::uint64_t result_seen_ = 0;   ///< the result of an edit that the pointer was near
+  input::Pixel result_at_ = input::Pixel::Zero();
   std::string traced_aim_;
   std::string traced_notice_ = "reads none";
 };

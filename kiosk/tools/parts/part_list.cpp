@@ -28,7 +28,7 @@ using panels::kInk;
 using panels::PanelLayout;
 using panels::printable;
 
-constexpr float kLowEms = 22;  ///< a lower list has its actions in a menu
+constexpr float kLowEms = 17;  ///< a lower list has its actions in a menu
 constexpr unsigned kChosenRow = 0x50ecb468U, kHoveredRow = 0x18ffffffU;
 
 struct Column {

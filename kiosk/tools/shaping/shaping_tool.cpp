@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "kiosk/input/key_table.h"
+#include "kiosk/panels/text.h"
 #include "kiosk/toolkit/open_panels.h"
 #include "kiosk/toolkit/picking.h"
 #include "kiosk/toolkit/tool_set.h"
