@@ -1,5 +1,6 @@
 // The tree of files and parts: what is filtered, sorted, folded and chosen; what its rows and buttons ask for; and its error counts.
 #include <algorithm>
+#include <limits>
 #include <random>
 #include <set>
 #include <string>
@@ -9,6 +10,7 @@
 #include <gtest/gtest.h>
 #include <imgui.h>
 
+#include "kiosk/panels/text.h"
 #include "kiosk/tools/parts/part_errors.h"
 #include "kiosk/tools/parts/part_list.h"
 #include "kiosk/tools/parts/part_tree.h"
