@@ -50,8 +50,19 @@ void Editor::set_room(const render::PixelRect& room) {
 void Editor::point_at(const Pointer& pointer) {
   toolkit::PointedAt found = toolkit::pointed_at(context_, pointer);
   const bool same = found.words == context_.pointed.words;
+  // Where nothing is pointed at, on panels too, the line of the last edit stays.
+  if (result_left_ && !found.words.empty() && !context_.link.notices.result().empty()) {
+    context_.link.notices.forget_result();
+    ++context_.changes;
+  }
   context_.pointed = std::move(found);
   if (!same) ++context_.changes;
+}
+
+void Editor::pointer_moved(const Pixel& at) {
+  constexpr double kLeavesPixels = 40;  ///< farther from where it was the pointer looks at something else than the edit
+  pointer_ = at;
+  if ((at - result_at_).norm() > kLeavesPixels) result_left_ = true;
 }
 
 void Editor::look_from(const stereo::SeenFrom& seen) {
@@ -80,6 +91,10 @@ Result<void> Editor::follow() {
   if (!std::exchange(context_.follow_soon, false) && link.changes() == link_changes_) return {};
   link_changes_ = link.changes();
   ++context_.changes;
+  if (std::exchange(result_seen_, link.notices.results()) != link.notices.results()) {
+    result_at_ = pointer_;
+    result_left_ = false;
+  }
   notices_.follow(link.document.number());
   for (Notice& notice : link.notices.take()) notices_.take(std::move(notice));
   for (const auto& tool : tools_.all())

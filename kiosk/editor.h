@@ -39,6 +39,8 @@ class Editor {
   void set_room(const render::PixelRect& room);
   /// Where the pointer rests; none: beside the model. Finds what is under it.
   void point_at(const toolkit::Pointer& pointer);
+  /// On its way, on panels too.
+  void pointer_moved(const input::Pixel& at);
   /// What the next picture is drawn for. Depth follows.
   void look_from(const stereo::SeenFrom& seen);
   void set_eyes_facts(std::optional<toolkit::EyesFacts> facts);
@@ -88,6 +90,11 @@ class Editor {
   toolkit::ToolSet tools_;
   toolkit::ToolContext context_;
   std::uint64_t link_changes_ = 0;  ///< followed so far
+  input::Pixel pointer_ = input::Pixel::Zero();
+  // The line that tells what the last edit did: it goes when the pointer, which was there as it came, points at something else.
+  std::uint64_t result_seen_ = 0;
+  input::Pixel result_at_ = input::Pixel::Zero();
+  bool result_left_ = false;
   std::string traced_aim_;
   std::string traced_notice_ = "reads none";
 };

@@ -90,6 +90,22 @@ void rail(ToolContext& context, PanelLayout& layout) {
   panels::rail_panel(buttons, layout);
 }
 
+void push_padding(float tab) {
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(tab, kGrid / 2));
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemInnerSpacing, ImVec2(2, kGrid / 2));
+}
+
+/// Pushes a padding with which all tabs are seen side by side, if they can be.
+float push_tab_padding(const ToolContext& context) {
+  float words = ImGui::CalcTextSize("Model").x;
+  float count = 1;
+  for (const auto* tool : context.tools.with<toolkit::HasTab>()) words += ImGui::CalcTextSize(tool->tab()).x, ++count;
+  const float room = ImGui::GetContentRegionAvail().x - words - 3 * count;
+  const float padding = std::clamp(std::floor(room / (2 * count)), 2.0F, kGrid);
+  push_padding(padding);
+  return padding;
+}
+
 toolkit::Tool* in_hand(const ToolContext& context) { return context.open.in_hand != nullptr ? context.open.in_hand : context.open.usual; }
 
 void options(ToolContext& context, PanelLayout& layout) {
@@ -113,6 +129,7 @@ panels::StatusFacts status_facts(const ToolContext& context) {
     if (const auto* tool = dynamic_cast<const toolkit::HasOptions*>(in_hand(context))) facts.setting = tool->setting_words();
     for (const auto* tool : context.tools.with<toolkit::TellsLive>())
       if (facts.pointed.empty()) facts.pointed = tool->live_words();
+    if (facts.pointed.empty()) facts.pointed = context.link.notices.result();
     if (facts.pointed.empty()) facts.pointed = context.pointed.words;
     if (info.selected_nodes > 0)
       facts.selection = panels::grouped(info.selected_nodes) + (info.selected_nodes == 1 ? " node selected" : " nodes selected");
@@ -196,14 +213,17 @@ void PanelArrangement::build_dock(ToolContext& context, PanelLayout& layout) {
   if (places.dock.empty()) return;
   const bool document = context.shown.snapshot != nullptr;
   panels::begin_docked("Dock", places.upper);
+  const float tabs = push_tab_padding(context);
   if (ImGui::BeginTabBar("tabs", ImGuiTabBarFlags_FittingPolicyScroll)) {
     const auto tab = [&](const char* name, const std::function<void()>& draw) {
       const bool shown = ImGui::BeginTabItem(name);
       panels::note_item(layout, std::string("tab ") + name, shown ? "on" : "off");
       if (!shown) return;
+      ImGui::PopStyleVar(2);
       ImGui::BeginChild(name);
       if (document) draw();
       ImGui::EndChild();
+      push_padding(tabs);
       ImGui::EndTabItem();
     };
     for (auto* tool : context.tools.with<toolkit::HasTab>()) tab(tool->tab(), [&] { tool->draw_tab(layout); });
@@ -213,6 +233,7 @@ void PanelArrangement::build_dock(ToolContext& context, PanelLayout& layout) {
     });
     ImGui::EndTabBar();
   }
+  ImGui::PopStyleVar(2);
   ImGui::End();
   panels::begin_docked("In hand", places.lower);
   ImGui::BeginChild("panel");

@@ -5,6 +5,7 @@
 #include "kiosk/tools/contact/contact_tool.h"
 #include "kiosk/tools/files/files_tool.h"
 #include "kiosk/tools/find/find_tool.h"
+#include "kiosk/tools/history/history_tool.h"
 #include "kiosk/tools/mesh_operations/mesh_operations_tool.h"
 #include "kiosk/tools/parts/parts_tool.h"
 #include "kiosk/tools/pen/pen_tool.h"
@@ -40,6 +41,7 @@ const std::vector<ListedTool>& listed_tools() {
       {tools::contact::keys(), make<tools::contact::ContactTool>},
       {tools::mesh_operations::keys(), make<tools::mesh_operations::MeshOperationsTool>},
       {tools::parts::keys(), make<tools::parts::PartsTool>},
+      {{}, make<tools::history::HistoryTool>},
       {tools::view::keys(), make<tools::view::ViewTool>},
       {tools::pen::keys(), make<tools::pen::PenTool>},
       {kWindowKeys},

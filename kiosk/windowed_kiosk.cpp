@@ -85,6 +85,7 @@ Result<void> WindowedKiosk::take(const display::WindowEvent& event) {
     station_.screen.gui().feed(event);
     edge_fed_ = station_.screen.gui().holds_pointer();  // the way up to the release counts
     gestures(gestures_.moved(*moved));
+    station_.editor.pointer_moved({moved->x, moved->y});
     // Panels answer to the pointer, and some pictures carry it.
     if (was_on_panel || station_.screen.gui().on_panel(moved->x, moved->y) || draws_pointer()) dirty_ = true;
     rests_ns_ = station_.clock.now_ns() + kPointerRestNs;

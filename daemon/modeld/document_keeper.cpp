@@ -4,6 +4,7 @@
 #include <new>
 #include <system_error>
 
+#include "base/counted.h"
 #include "daemon/modeld/deck_files.h"
 #include "daemon/modeld/paths.h"
 #include "daemon/modeld/retiring.h"
@@ -216,6 +217,43 @@ Result<EditReport> DocumentKeeper::edit(const Edit& edit, const Progress& progre
   const std::shared_ptr<const Judging> judging = open.document.current().judging;
   commit(open.document, std::move(*prepared));
   if (open.document.current().judging != judging) keep_judging(report);
+  return report;
+}
+
+Result<EditReport> DocumentKeeper::go_to(std::uint64_t generation, const Progress& progress, Clock* clock) {
+  if (!open_) return fail("", "no document is open");
+  const Document& document = open_->document;
+  const auto found = std::ranges::find_if(document.generations, [&](const auto& each) { return each->number == generation; });
+  if (found == document.generations.end()) return fail("", "the history has no state " + std::to_string(generation) + " any more");
+  const auto target = static_cast<std::size_t>(found - document.generations.begin());
+  const std::shared_ptr<const Generation> from = document.generations[document.cursor];
+  const std::size_t steps = target > document.cursor ? target - document.cursor : document.cursor - target;
+  const bool back = target < document.cursor;
+  EditReport report;
+  report.before = report.after = from->counts;
+  report.clusters_before = report.clusters_after = from->clusters->size();
+  std::size_t step = 0;
+  for (; step < steps; ++step) {
+    if (progress && !progress(static_cast<double>(step) / static_cast<double>(steps))) {
+      report.notes.push_back("stopped after " + std::to_string(step) + " of " + counted(steps, "step"));
+      break;
+    }
+    Result<EditReport> made = edit(back ? Edit(mesh::document::Undo{}) : Edit(mesh::document::Redo{}), {}, clock);
+    if (!made && step == 0) return made;
+    if (!made) {
+      report.notes.push_back("stopped after " + std::to_string(step) + " of " + counted(steps, "step") + ": " + made.error().text());
+      break;
+    }
+    if (!report.mass_before) report.mass_before = made->mass_before, report.centre_before = made->centre_before;
+    if (made->mass_after) report.mass_after = made->mass_after, report.centre_after = made->centre_after;
+    report.after = made->after;
+    report.clusters_after = made->clusters_after;
+    report.milliseconds += made->milliseconds;
+  }
+  report.edit = back ? "undo" : "redo";
+  if (step > 0) report.notes.insert(report.notes.begin(), (back ? "undid " : "did again: ") + counted(step, "step"));
+  report.nodes_moved = mesh::moved_nodes(from->model, document.current().model).size();
+  if (report.nodes_moved > 0) report.largest_move = mesh::largest_move(from->model, document.current().model);
   return report;
 }
 

@@ -67,7 +67,14 @@ Outcome RequestHandler::reopen(const Progress& progress) {
 }
 
 Outcome RequestHandler::edit(const mesh::document::Edit& edit, const Progress& progress) {
-  Result<mesh::document::EditReport> report = keeper_.edit(edit, progress, &clock_);
+  return edited(keeper_.edit(edit, progress, &clock_));
+}
+
+Outcome RequestHandler::go_to(const ipc::GoTo& request, const Progress& progress) {
+  return edited(keeper_.go_to(request.generation, progress, &clock_));
+}
+
+Outcome RequestHandler::edited(Result<mesh::document::EditReport> report) {
   if (!report) return {ipc::failed_from(report.error()), {}, {}, {}};
   Outcome outcome;
   const std::string made_by = report->edit;

@@ -49,6 +49,7 @@ class RequestHandler {
   /// Makes a field that views colour by. A deck to compare with is read here and kept for the next request.
   Outcome field(const ipc::GetField& request, const Progress& progress);
   /// Finds where shells cross or are too close.
+  Outcome go_to(const ipc::GoTo& request, const Progress& progress);
   Outcome contacts(const ipc::GetContacts& request, const Progress& progress);
   /// A cancel before the first file is replaced leaves all files as they were; a later one is ignored.
   Outcome save(const ipc::Save& request, const Progress& progress = {});
@@ -64,6 +65,7 @@ class RequestHandler {
 
  private:
   Outcome opened();
+  Outcome edited(Result<mesh::document::EditReport> report);
   void show(const std::string& made_by, Outcome& outcome);
 
   DocumentKeeper keeper_;

@@ -81,6 +81,8 @@ void RequestScheduler::request(ipc::ClientId client, std::uint64_t number, ipc::
   if (const auto* snapshot = std::get_if<ipc::GetSnapshot>(&request)) return give_snapshot(client, number, *snapshot);
   if (const auto* camera = std::get_if<ipc::ShareCamera>(&request)) return share_camera(client, *camera);
   if (const auto* cancelled = std::get_if<ipc::Cancel>(&request)) return cancel(client, number, *cancelled);
+  if (std::holds_alternative<ipc::GetHistory>(request))
+    return channel_.answer(client, number, ipc::History{published_.state.generation, published_.state.generations}, {});
   if (std::holds_alternative<ipc::GetState>(request)) return channel_.answer(client, number, state(), {});
   line_up(client, number, std::move(request), bytes);
 }
@@ -240,6 +242,9 @@ void RequestScheduler::begin(Waiting next) {
   else if (auto* edit = std::get_if<ipc::ApplyEdit>(&next.request))
     run_long(next, std::string(mesh::document::name(edit->edit)), OnDeath::stops,
              [this, edit = std::move(edit->edit)](const Progress& progress) { return handler_.edit(edit, progress); });
+  else if (auto* target = std::get_if<ipc::GoTo>(&next.request))
+    run_long(next, "Going through the history", OnDeath::goes_on,
+             [this, request = *target](const Progress& progress) { return handler_.go_to(request, progress); });
   else if (auto* count = std::get_if<ipc::Count>(&next.request))
     run_long(next, "Counting", OnDeath::stops,
              [this, request = std::move(*count)](const Progress& progress) { return handler_.count(request, progress); });

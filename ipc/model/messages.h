@@ -47,6 +47,10 @@ struct Close {
 struct ApplyEdit {
   mesh::document::Edit edit;
 };
+/// Goes to a state of the history by as many undos or redos as that takes; each is journalled as one.
+struct GoTo {
+  std::uint64_t generation = 0;  ///< one of DocumentState::generations
+};
 struct BeginDrag {
   mesh::document::Edit edit;  ///< translate, lift, slide, rotate or move; the displacement is ignored
 };
@@ -107,6 +111,7 @@ struct Cancel {
   bool keep = false;  ///< keeps what a repair has reached; false: its `on_cancel` decides
 };
 struct GetState {};
+struct GetHistory {};
 struct GetSnapshot {
   std::optional<std::uint64_t> generation;   ///< one of DocumentState::generations; absent: the current one
   std::vector<std::uint64_t> have_segments;  ///< segments the client still has mapped
@@ -124,9 +129,9 @@ struct FollowPen {                         ///< descriptor: the state page of th
 };
 struct LeavePen {};
 
-using Request = std::variant<Hello, Open, Save, Close, ApplyEdit, BeginDrag, DragStep, CommitDrag, CancelDrag, Cancel, Count, GetQuality,
-                             FindShells, PreviewEdit, FindFollowedEdges, GetField, GetContacts, ShareCamera, GetState, GetSnapshot,
-                             ReturnSnapshot, FollowPen, LeavePen>;
+using Request = std::variant<Hello, Open, Save, Close, ApplyEdit, GoTo, BeginDrag, DragStep, CommitDrag, CancelDrag, Cancel, Count,
+                             GetQuality, FindShells, PreviewEdit, FindFollowedEdges, GetField, GetContacts, ShareCamera, GetState,
+                             GetHistory, GetSnapshot, ReturnSnapshot, FollowPen, LeavePen>;
 
 // --- answers (Failed and Done: ipc/wire/answers.h) ---
 struct Welcome {
@@ -164,6 +169,11 @@ struct DocumentState {
   std::vector<ListedGeneration> generations;         ///< oldest first; undo and redo move among them
   std::vector<DeckFile> files;
   std::vector<mesh::deck::Warning> warnings;
+};
+/// The states that undo and redo move among; without a document there are none.
+struct History {
+  std::uint64_t generation = 0;               ///< the current one
+  std::vector<ListedGeneration> generations;  ///< oldest first
 };
 struct Saved {
   std::string path;
@@ -277,8 +287,8 @@ struct Snapshot {  ///< descriptors: the table, then the segments listed in new_
   std::vector<std::uint64_t> new_segments;  ///< those sent with this message, in this order
 };
 struct PenFollowed {};  ///< descriptor: the page with the fields (ipc/pen/haptic_field_page.h)
-using Answer = std::variant<Failed, Done, Welcome, DocumentState, Saved, SaveWould, Edited, Counted, Quality, ShellsFound, EditPreviewed,
-                            FollowedEdges, DragBegun, Snapshot, FieldMade, Contacts, PenFollowed>;
+using Answer = std::variant<Failed, Done, Welcome, DocumentState, History, Saved, SaveWould, Edited, Counted, Quality, ShellsFound,
+                            EditPreviewed, FollowedEdges, DragBegun, Snapshot, FieldMade, Contacts, PenFollowed>;
 
 // --- events; sent to every client ---
 struct GenerationPublished {

@@ -14,6 +14,7 @@ PRISMESH_MESSAGE(ipc::Open, "open", f("path", m.path), f("length_unit", m.length
 PRISMESH_MESSAGE(ipc::Save, "save", f("path", m.path), f("becomes", m.becomes), f("asks", m.asks), f("stays_unsaved", m.stays_unsaved));
 PRISMESH_MESSAGE(ipc::Close, "close", f("discard", m.discard), f("keep", m.keep));
 PRISMESH_MESSAGE(ipc::ApplyEdit, "apply_edit", f("edit", m.edit));
+PRISMESH_MESSAGE(ipc::GoTo, "go_to", f("generation", m.generation));
 PRISMESH_MESSAGE(ipc::BeginDrag, "begin_drag", f("edit", m.edit));
 PRISMESH_MESSAGE(ipc::DragStep, "drag_step", f("drag", m.drag), f("sequence", m.sequence), f("by", m.by), f("distance", m.distance),
                  f("degrees", m.degrees));
@@ -26,6 +27,7 @@ PRISMESH_MESSAGE(ipc::FindShells, "find_shells", f("metric", m.metric), f("from"
 PRISMESH_MESSAGE(ipc::PreviewEdit, "preview_edit", f("edit", m.edit));
 PRISMESH_MESSAGE(ipc::FindFollowedEdges, "find_followed_edges", f("edit", m.edit));
 PRISMESH_MESSAGE(ipc::GetState, "get_state", );
+PRISMESH_MESSAGE(ipc::GetHistory, "get_history", );
 PRISMESH_MESSAGE(ipc::GetField, "get_field", f("field", m.field), f("generation", m.generation), f("against", m.against),
                  f("against_generation", m.against_generation), f("from", m.from), f("to", m.to));
 PRISMESH_MESSAGE(ipc::GetContacts, "get_contacts", f("select", m.select), f("gap", m.gap), f("thickness", m.thickness));
@@ -58,6 +60,7 @@ PRISMESH_MESSAGE(ipc::DocumentState, "state", f("open", m.open), f("busy", m.bus
                  f("generations", m.generations), f("files", m.files), f("warnings", m.warnings));
 PRISMESH_JSON_OBJECT(ipc::ListedGeneration, f("number", m.number), f("made_by", m.made_by));
 PRISMESH_JSON_OBJECT(ipc::DeckFile, f("name", m.name), f("shells", m.shells), f("parts", m.parts));
+PRISMESH_MESSAGE(ipc::History, "history", f("generation", m.generation), f("generations", m.generations));
 PRISMESH_MESSAGE(ipc::Saved, "saved", f("path", m.path), f("nodes_written", m.nodes_written), f("lines_changed", m.lines_changed),
                  f("notes", m.notes));
 PRISMESH_MESSAGE(ipc::SaveWould, "save_would", f("replace", m.replace), f("make", m.make));
@@ -103,10 +106,10 @@ PRISMESH_JSON_OBJECT(mesh::document::RegionLeft, f("a", m.a), f("b", m.b), f("wh
 PRISMESH_JSON_OBJECT(mesh::document::Separated, f("regions_before", m.regions_before), f("regions_removed", m.regions_removed),
                      f("regions_left", m.regions_left), f("depth_before", m.depth_before), f("depth_after", m.depth_after),
                      f("largest_move", m.largest_move));
-PRISMESH_JSON_OBJECT(mesh::document::EditReport, f("edit", m.edit), f("nodes_moved", m.nodes_moved), f("elements_added", m.elements_added),
-                     f("elements_removed", m.elements_removed), f("before", m.before), f("after", m.after),
-                     f("clusters_before", m.clusters_before), f("clusters_after", m.clusters_after), f("triangle_pairs", m.triangle_pairs),
-                     f("stopped", m.stopped), f("separated", m.separated), f("inverted", m.inverted),
+PRISMESH_JSON_OBJECT(mesh::document::EditReport, f("edit", m.edit), f("nodes_moved", m.nodes_moved), f("largest_move", m.largest_move),
+                     f("elements_added", m.elements_added), f("elements_removed", m.elements_removed), f("before", m.before),
+                     f("after", m.after), f("clusters_before", m.clusters_before), f("clusters_after", m.clusters_after),
+                     f("triangle_pairs", m.triangle_pairs), f("stopped", m.stopped), f("separated", m.separated), f("inverted", m.inverted),
                      f("lost_connections", m.lost_connections), f("lost", m.lost), f("mass_before", m.mass_before),
                      f("mass_after", m.mass_after), f("cog_before", m.centre_before), f("cog_after", m.centre_after), f("notes", m.notes),
                      f("ms", m.milliseconds));

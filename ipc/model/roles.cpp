@@ -12,6 +12,7 @@ Role needed(const Count&) { return Role::watch; }
 Role needed(const GetQuality&) { return Role::watch; }
 Role needed(const FindShells&) { return Role::watch; }
 Role needed(const GetState&) { return Role::watch; }
+Role needed(const GetHistory&) { return Role::watch; }
 Role needed(const GetSnapshot&) { return Role::watch; }
 Role needed(const ReturnSnapshot&) { return Role::watch; }
 // Another deck is read with the daemon's rights, from any path.
@@ -21,6 +22,7 @@ Role needed(const Open&) { return Role::edit; }
 Role needed(const Save&) { return Role::edit; }
 Role needed(const Close&) { return Role::edit; }
 Role needed(const ApplyEdit&) { return Role::edit; }
+Role needed(const GoTo&) { return Role::edit; }
 Role needed(const BeginDrag&) { return Role::edit; }
 Role needed(const DragStep&) { return Role::edit; }
 Role needed(const CommitDrag&) { return Role::edit; }

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <string>
 #include <string_view>
 
 #include "kiosk/link/followed_document.h"
@@ -16,12 +18,17 @@ class EditRequests final : public ConnectionListener {
   EditRequests(Connection& connection, FollowedDocument& document, LinkNotices& notices);
 
   void send(mesh::document::Edit edit);
+  /// Undoes or redoes up to a state of the history.
+  void go_to(std::uint64_t generation);
   /// An edit isn't answered yet.
   bool under_way() const { return under_way_ > 0; }
 
   void lost() override { under_way_ = 0; }
 
  private:
+  /// `what`: words_of_edit.
+  void answered(const ipc::Answer& answer, bool selecting, const std::string& what);
+
   Connection& connection_;
   FollowedDocument& document_;
   LinkNotices& notices_;

@@ -22,6 +22,8 @@ class FollowedDocument final : public ConnectionListener {
   const std::vector<notices::ToldWarning>& warnings() const { return warnings_; }
   /// The current generation; null while no document is open. Stays while the server is away.
   const std::shared_ptr<const ipc::SnapshotView>& snapshot() const { return snapshot_; }
+  /// Of the document that is shown; empty: none is.
+  std::string length_unit() const { return snapshot_ ? snapshot_->info().length_unit : std::string(); }
   /// Counts up each time that another document is opened.
   std::uint64_t number() const { return number_.value(); }
   /// No newer generation is known or requested.

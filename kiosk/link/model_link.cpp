@@ -8,6 +8,7 @@ ModelLink::ModelLink(const std::filesystem::path& socket, const std::optional<st
       connection(socket, clock, trace, notices),
       document(connection, number, notices, trace),
       deck(deck_to_open, connection, document, number, notices, trace),
+      history(connection),
       edits(connection, document, notices),
       drag(connection, document, notices, clock, trace),
       count(connection, trace),

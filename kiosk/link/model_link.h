@@ -8,6 +8,7 @@
 
 #include "kiosk/link/edit_requests.h"
 #include "kiosk/link/expression_count.h"
+#include "kiosk/link/followed_history.h"
 #include "kiosk/link/remote_drag.h"
 #include "kiosk/link/shared_cameras.h"
 #include "kiosk/link/wanted_deck.h"
@@ -32,6 +33,7 @@ struct ModelLink {
   Connection connection;
   FollowedDocument document;
   WantedDeck deck;
+  FollowedHistory history;
   EditRequests edits;
   RemoteDrag drag;
   ExpressionCount count;

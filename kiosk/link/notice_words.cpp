@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include "base/progress.h"
-#include "base/readable_number.h"
 #include "ipc/wire/failure.h"
 #include "mesh/document/edit_kinds.h"
 
@@ -15,16 +14,9 @@ namespace {
 
 using notices::Notice;
 
-constexpr int kDigits = 6;                      ///< of what an edit reports
 constexpr std::string_view kRepair = "repair";  ///< the work that can be stopped and kept
 
 std::string text_of(const ipc::Failed& failed) { return ipc::error_from(failed).text(); }
-
-/// Whether an edit of this name relaxes or repairs the mesh.
-bool is_mending(std::string_view edit) {
-  const mesh::document::EditKind* kind = mesh::document::find_edit_kind(edit);
-  return kind != nullptr && kind->group == mesh::document::EditGroup::mending;
-}
 
 }  // namespace
 
@@ -79,22 +71,14 @@ std::optional<Notice> notice_of_warnings(std::span<const notices::ToldWarning> w
   return notice;
 }
 
-std::optional<Notice> notice_of_report(const mesh::document::EditReport& report) {
+std::optional<Notice> notice_of_notes(const mesh::document::EditReport& report, const std::string& result) {
+  // The first note of an undo or redo says what it undid: the result has it.
+  const mesh::document::EditKind* kind = mesh::document::find_edit_kind(report.edit);
+  const bool step = kind != nullptr && kind->group == mesh::document::EditGroup::step;
   std::string text;
-  if (is_mending(report.edit))
-    text = fmt::format("{}: warn {} \u2192 {}, fail {} \u2192 {}", report.edit, report.before.warn, report.after.warn, report.before.fail,
-                       report.after.fail);
-  if (report.clusters_before != report.clusters_after)
-    text += fmt::format("{}clusters of triangles {} \u2192 {}", text.empty() ? "" : ", ", report.clusters_before, report.clusters_after);
-  for (const std::string& note : report.notes) text += (text.empty() ? "" : "\n") + note;
-  if (report.mass_before && report.mass_after) {
-    text += fmt::format("{}mass {} \u2192 {}", text.empty() ? "" : "\n", readable(*report.mass_before, kDigits),
-                        readable(*report.mass_after, kDigits));
-    if (const auto& from = report.centre_before, &to = report.centre_after; from && to)
-      text += fmt::format(", centre of gravity ({}) \u2192 ({})", readable(*from, kDigits), readable(*to, kDigits));
-  }
+  for (std::size_t i = step ? 1 : 0; i < report.notes.size(); ++i) text += (text.empty() ? "" : "\n") + report.notes[i];
   if (text.empty()) return std::nullopt;
-  return Notice{Notice::Kind::information, std::move(text)};
+  return Notice{Notice::Kind::information, result.empty() ? std::move(text) : result + "\n" + text};
 }
 
 std::string words_of_opening(const std::string& deck) { return words_of_progress({"Opening " + deck}, true); }

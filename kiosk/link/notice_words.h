@@ -33,8 +33,8 @@ notices::Notice notice_of_ended_drag(const ipc::DragEnded& ended);
 std::optional<notices::Notice> notice_of_recovery(const ipc::DocumentState& state);
 /// The worst of them, which come first; the list has all. Nothing if there are none.
 std::optional<notices::Notice> notice_of_warnings(std::span<const notices::ToldWarning> warnings);
-/// What an edit did; nothing where there is nothing to tell. An edit that relaxes or repairs always has something.
-std::optional<notices::Notice> notice_of_report(const mesh::document::EditReport& report);
+/// What an edit has to say beside its figures, below its `result` (result_words); nothing where there is nothing.
+std::optional<notices::Notice> notice_of_notes(const mesh::document::EditReport& report, const std::string& result);
 
 // What the server is doing.
 

@@ -8,6 +8,7 @@
 
 #include "ipc/wire/failure.h"
 #include "kiosk/link/notice_words.h"
+#include "kiosk/link/result_words.h"
 
 namespace prismesh::kiosk::link {
 namespace {
@@ -25,6 +26,7 @@ RemoteDrag::RemoteDrag(Connection& connection, FollowedDocument& document, LinkN
 
 void RemoteDrag::begin(mesh::document::Edit edit) {
   drag_ = Drag{};
+  drag_->edit = edit;
   connection_.ask(ipc::BeginDrag{std::move(edit)}, [this](const ipc::Answer& answer) { began(answer); });
   if (!connection_.connected()) drag_.reset();
 }
@@ -102,8 +104,9 @@ void RemoteDrag::send_commit() {
 }
 
 void RemoteDrag::committed(const ipc::Edited& edited) {
-  if (auto notice = notice_of_report(edited.report)) notices_.say(std::move(*notice));
   if (!drag_) return;
+  mesh::document::set_displacement(drag_->edit, drag_->wanted);
+  notices_.tell_edit(words_of_edit(drag_->edit, document_.length_unit()), edited.report, document_.length_unit());
   // Without its preview the nodes would jump back until the generation is here.
   drag_->made = edited.generation;
   if (document_.shows(edited.generation))

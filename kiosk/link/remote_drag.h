@@ -51,6 +51,7 @@ class RemoteDrag final : public ConnectionListener {
   enum class Wish : std::uint8_t { hold, commit, cancel };
   struct Drag {
     RunningDrag told;
+    mesh::document::Edit edit;            ///< its displacement is ignored
     mesh::document::Displacement wanted;  ///< by the hand
     bool moved = false;                   ///< since the last step was sent
     std::uint64_t sequence = 0;           ///< of the last step sent

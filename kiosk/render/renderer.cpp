@@ -78,6 +78,7 @@ struct Renderer::Impl {
   ModelLayer other_layer;
   std::shared_ptr<const ModelSource> other;
   std::array<FieldColours, 2> fields;
+  PaintTexture paint;
   struct Images {
     EyeImages eyes;
     std::optional<DrawnScene> kept;  ///< the scene in them
@@ -143,6 +144,12 @@ Result<void> Renderer::set_field(Pane pane, std::span<const float> values, bool 
   FieldColours& field = impl_->fields[static_cast<std::size_t>(pane)];
   field.clear();
   return values.empty() ? Result<void>() : field.set(values, on_nodes);
+}
+
+Result<void> Renderer::set_part_paints(std::span<const PartPaint> paints) {
+  ++impl_->scene_version;
+  impl_->items_version = 0;
+  return impl_->paint.set(paints);
 }
 
 const ModelSource* Renderer::model() const { return impl_->model.get(); }
@@ -240,7 +247,7 @@ Result<void> Renderer::Impl::draw_scene(Images& images, const Picture& picture, 
 /// Draws the model over the whole picture, or two views side by side.
 void Renderer::Impl::draw_views(const Picture& picture, const EyeView& eye, int width) {
   scene.begin(eye);
-  if (!picture.two_views) return scene.draw(picture, {layer, fields[0], picture.field[0]}, eye, options.glyph_cap);
+  if (!picture.two_views) return scene.draw(picture, {layer, fields[0], picture.field[0], paint}, eye, options.glyph_cap);
   for (const Pane pane : {Pane::model, Pane::other}) {
     const bool right = (pane == Pane::model) == picture.two_views->model_on_right;
     Picture half = picture;
@@ -257,7 +264,7 @@ void Renderer::Impl::draw_views(const Picture& picture, const EyeView& eye, int 
     scene.begin_pane(eye, right ? middle + kHalfGapPixels : 0, right ? width : middle - kHalfGapPixels);
     const auto at = static_cast<std::size_t>(pane);
     ModelLayer& shown = pane == Pane::model ? layer : other_layer;
-    scene.draw(half, {shown, fields[at], picture.field[at]}, eye, options.glyph_cap);
+    scene.draw(half, {shown, fields[at], picture.field[at], paint}, eye, options.glyph_cap);
   }
   glDisable(GL_STENCIL_TEST);
 }
@@ -308,7 +315,7 @@ const ItemImage& Renderer::Impl::items_for(const stereo::Aim& aim) {
   if (items_version == layer.shape_version() && items_clip == clip && !items.items.empty()) return items;
   glBindFramebuffer(GL_FRAMEBUFFER, item_framebuffer.get());
   glViewport(0, 0, aim.width, aim.height);
-  scene.draw_items(layer, clip);
+  scene.draw_items(layer, paint, clip);
   read_items(aim.width, aim.height);
   items_clip = clip;
   items_version = layer.shape_version();

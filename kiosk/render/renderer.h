@@ -12,6 +12,7 @@
 #include "kiosk/render/contact_picture.h"
 #include "kiosk/render/mesh_change.h"
 #include "kiosk/render/model_source.h"
+#include "kiosk/render/part_paint.h"
 #include "kiosk/render/picture.h"
 
 namespace prismesh::kiosk::render {
@@ -51,6 +52,10 @@ class Renderer {
   /// Sets the values that colour a view, one for each of its nodes or shells; empty: no colours. Uploads only the rows that changed.
   /// Errors: no graphics memory.
   Result<void> set_field(Pane pane, std::span<const float> values, bool on_nodes);
+
+  /// Sets what was chosen for parts, by PartIndex, in both views; it stays when the model changes. Parts beyond the end have no paint. The
+  /// shells of transparent parts are drawn last, blended without depth, and picks go through them. Errors: no graphics memory.
+  Result<void> set_part_paints(std::span<const PartPaint> paints);
 
   /// Marks where shells of the model touch; an empty picture: nowhere. Errors: too large for the GPU, no graphics memory.
   Result<void> set_contact(ContactPicture picture);

@@ -20,6 +20,7 @@ constexpr float kWayOutHalfWidth = 0.9F;
 constexpr float kHemWidth = 1.1F;
 /// A shell with a smaller radius on the screen is enlarged to this one for its glyph.
 constexpr RadiusLimits kGlyphRadius{9.0F, 5.0F, 0.7F};
+constexpr float kTransparentOpacity = 0.3F;
 constexpr double kLinesTowardEye = 1.3;  ///< pixels: depth offset of lines from the surface they lie on
 
 }  // namespace
@@ -130,7 +131,21 @@ void ScenePass::draw_shells(const Picture& picture, const ViewContent& content, 
                                                 static_cast<float>(look.bands)));
   shaders_.shells.set("eye_in_model", frame.eye_in_model);
   shaders_.shells.set("edge_strength", picture.element_edges ? 0.42F : 0.0F);
+  shaders_.shells.set("opacity", 1.0F);
+  content.paint.use(shaders_.shells, false);
   draw_chunks(content.model, frame.clip_from_deck);
+  if (content.paint.any_transparent()) draw_transparent(content, frame);
+}
+
+/// The parts that are seen through, over the others. They don't hide each other, so their order shows in the mixture only.
+void ScenePass::draw_transparent(const ViewContent& content, const Frame& frame) const {
+  shaders_.shells.set("opacity", kTransparentOpacity);
+  content.paint.use(shaders_.shells, true);
+  blend_by_alpha();
+  glDepthMask(GL_FALSE);
+  draw_chunks(content.model, frame.clip_from_deck);
+  glDepthMask(GL_TRUE);
+  glDisable(GL_BLEND);
 }
 
 void ScenePass::draw_chunks(const ModelLayer& model, const Eigen::Matrix4d& clip_from_deck) const {
@@ -155,7 +170,7 @@ void ScenePass::draw_chunks(const ModelLayer& model, const Eigen::Matrix4d& clip
   flush();
 }
 
-void ScenePass::draw_items(const ModelLayer& model, const Eigen::Matrix4d& clip_from_deck) const {
+void ScenePass::draw_items(const ModelLayer& model, const PaintTexture& paint, const Eigen::Matrix4d& clip_from_deck) const {
   const GLuint ground[4] = {0, 0, 0, 0};
   glDisable(GL_SCISSOR_TEST);
   glDisable(GL_BLEND);
@@ -178,6 +193,7 @@ void ScenePass::draw_items(const ModelLayer& model, const Eigen::Matrix4d& clip_
   shaders_.items.set("positions", static_cast<int>(unit::kPositions));
   shaders_.items.set("connectivity", static_cast<int>(unit::kConnectivity));
   shaders_.items.set("surface", static_cast<int>(unit::kSurface));
+  paint.use(shaders_.items, false);
   draw_chunks(model, clip_from_deck);
   glDisable(GL_DEPTH_TEST);
 }

@@ -5,6 +5,7 @@
 #include "kiosk/render/frame.h"
 #include "kiosk/render/handle_pass.h"
 #include "kiosk/render/node_pass.h"
+#include "kiosk/render/paint_texture.h"
 #include "kiosk/render/shaders.h"
 #include "kiosk/render/shadow_pass.h"
 
@@ -14,7 +15,8 @@ namespace prismesh::kiosk::render {
 struct ViewContent {
   ModelLayer& model;
   FieldColours& field;
-  const FieldLook& look;  ///< how `field` is coloured
+  const FieldLook& look;      ///< how `field` is coloured
+  const PaintTexture& paint;  ///< of the model's parts
 };
 
 class ScenePass {
@@ -30,8 +32,8 @@ class ScenePass {
   void begin_pane(const EyeView& eye, double from, double to) const;
   /// Draws a view; at most `glyph_cap` quality glyphs.
   void draw(const Picture& picture, const ViewContent& content, const EyeView& eye, std::size_t glyph_cap) const;
-  /// Draws shell index + 1 into a bound R32UI framebuffer; 0: no shell.
-  void draw_items(const ModelLayer& model, const Eigen::Matrix4d& clip_from_deck) const;
+  /// Draws shell index + 1 into a bound R32UI framebuffer; 0: no shell. Transparent parts aren't drawn.
+  void draw_items(const ModelLayer& model, const PaintTexture& paint, const Eigen::Matrix4d& clip_from_deck) const;
 
  private:
   struct LineStyle {
@@ -41,6 +43,7 @@ class ScenePass {
   };
   void draw_ground(const EyeView& eye) const;
   void draw_shells(const Picture& picture, const ViewContent& content, const Frame& frame) const;
+  void draw_transparent(const ViewContent& content, const Frame& frame) const;
   void draw_lines(const LineSet& lines, const RowTexture& positions, const LineStyle& style, const Frame& frame) const;
   void draw_model_lines(const Picture& picture, const ModelLayer& model, const Frame& frame) const;
   void draw_contact_lines(const ModelLayer& model, const Frame& frame) const;

@@ -64,6 +64,15 @@ const int kCorner[6] = int[6](1, 2, 0, 2, 3, 0);
 uint node_of(uvec4 nodes, int corner) { return corner == 0 ? nodes.x : corner == 1 ? nodes.y : corner == 2 ? nodes.z : nodes.w; }
 )";
 
+// What was chosen for a part: a colour (bit 24 says so) and whether it is transparent (bit 25). `see_through`: transparent parts are drawn,
+// else the others.
+const char* const kPaint = R"(
+uniform usampler2D part_paint;
+uniform int painted_parts, see_through;
+uint paint_of(uint part) { return part < uint(painted_parts) ? texelFetch(part_paint, texel(part), 0).x : 0u; }
+bool is_drawn(uint paint) { return int((paint >> 25) & 1u) == see_through; }
+)";
+
 // Flat outputs take the value of a triangle's last vertex, which is corner 0 for both halves of a quad.
 const char* const kShellVertex = R"(
 uniform vec3 palette[22];
@@ -98,7 +107,9 @@ void main() {
   shade = 1.0;
   look = vec3(0.0);
   triangle = 0.0;
-  if ((word.x & 256u) != 0u) return;
+  uint part = word.x >> 9;
+  uint paint = paint_of(part);
+  if ((word.x & 256u) != 0u || !is_drawn(paint)) return;
   uvec4 nodes = texelFetch(connectivity, texel(shell), 0);
   vec3 at = texelFetch(positions, texel(node_of(nodes, corner)), 0).xyz;
   gl_Position = clip_from_model * vec4(at, 1.0);
@@ -112,8 +123,8 @@ void main() {
   const vec3 kFill = vec3(0.2747, -0.7325, 0.6229);
   float key = max(dot(normal, kKey), 0.0), fill = max(dot(normal, kFill), 0.0);
   float light = 0.48 + 0.40 * key + 0.12 * fill + 0.14 * max(normal.z, 0.0);
-  uint part = word.x >> 9;
   vec3 base = by_grade == 1 ? grades[min((word.x >> 5) & 3u, 2u)] : palette[min(word.x & 31u, 21u)];
+  if (by_grade == 0 && (paint & 0x1000000u) != 0u) base = unpackUnorm4x8(paint).rgb;
   if (by_grade == 2) base = part < uint(part_count) ? unpackUnorm4x8(texelFetch(part_looks, texel(part), 0).x).rgb : grades[0];
   if ((word.x & 128u) != 0u) base = mix(base, vec3(1.0), 0.55);
   look = base * light;
@@ -134,6 +145,7 @@ flat in vec3 look;
 flat in float triangle;
 uniform mat2 texels_from_pixels, pixels_from_texels;
 uniform float edge_strength;
+uniform float opacity;
 uniform sampler2D colour_map;
 uniform vec3 limits;  // start of the value range, 1 / its length, number of bands
 out vec4 colour;
@@ -162,7 +174,7 @@ void main() {
     if (limits.z > 0.0) share = (floor(min(share, 0.9999) * limits.z) + 0.5) / limits.z;
     painted = texture(colour_map, vec2((share * 255.0 + 0.5) / 256.0, 0.5)).rgb * shade;
   }
-  colour = vec4(painted * (1.0 - edge_strength * edge * edge_share), 1.0);
+  colour = vec4(painted * (1.0 - edge_strength * edge * edge_share), opacity);
 }
 )";
 
@@ -186,7 +198,8 @@ void main() {
   uint shell = uint(gl_VertexID / 6);
   item = shell + 1u;
   gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
-  if ((texelFetch(surface, texel(shell), 0).x & 256u) != 0u) return;
+  uint word = texelFetch(surface, texel(shell), 0).x;
+  if ((word & 256u) != 0u || !is_drawn(paint_of(word >> 9))) return;
   uvec4 nodes = texelFetch(connectivity, texel(shell), 0);
   gl_Position = clip_from_model * vec4(texelFetch(positions, texel(node_of(nodes, kCorner[gl_VertexID % 6])), 0).xyz, 1.0);
 }
@@ -261,8 +274,8 @@ Result<Shaders> Shaders::link() {
   const std::string pull = head + kPull, shell = pull + kShellPull, flat = "#define FLAT\n";
   const Entry entries[] = {
       {&Shaders::ground, "ground", cover_vertex_shader(), head + kGroundFragment},
-      {&Shaders::shells, "shells", shell + kShellVertex, head + kShellFragment},
-      {&Shaders::items, "items", shell + kItemVertex, head + kItemFragment},
+      {&Shaders::shells, "shells", shell + kPaint + kShellVertex, head + kShellFragment},
+      {&Shaders::items, "items", shell + kPaint + kItemVertex, head + kItemFragment},
       {&Shaders::lines, "lines", pull + kSquareCorner + kLineVertex, head + kLineFragment},
       {&Shaders::nodes, "nodes", pull + kNodeVertex, head + kNodeFragment},
       {&Shaders::flat_nodes, "flat nodes", pull + flat + kNodeVertex, head + flat + kNodeFragment},

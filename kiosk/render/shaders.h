@@ -20,6 +20,7 @@ inline constexpr unsigned kPhases = 6;
 inline constexpr unsigned kPartLooks = 7;
 inline constexpr unsigned kField = 8;
 inline constexpr unsigned kColourMap = 9;
+inline constexpr unsigned kPaint = 10;
 }  // namespace unit
 
 /// Version and precision: the start of every shader.

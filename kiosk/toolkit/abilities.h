@@ -93,6 +93,14 @@ class GuardsEdits : public Ability {
   virtual void edit_begins() = 0;
 };
 
+/// Asks the user before some edits.
+class HoldsEdits : public Ability {
+ public:
+  /// True: the edit must not be made now, as the user is asked first. If the user agrees, the tool sends it if `sends`; else the user makes
+  /// it again.
+  virtual bool hold(const mesh::document::Edit& edit, bool sends) = 0;
+};
+
 class SetsShaping : public Ability {
  public:
   /// What the hand has set for shaping edits that take a node. `middle`: of what moves, for a mirror without a place of its own.

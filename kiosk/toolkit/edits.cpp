@@ -8,7 +8,7 @@
 namespace prismesh::kiosk::toolkit {
 
 void send(ToolContext& context, mesh::document::Edit edit) {
-  if (!context.tools.allow_edit()) return;
+  if (!context.tools.allow_edit() || context.tools.hold(edit, true)) return;
   context.tools.edit_begins();
   context.link.edits.send(std::move(edit));
 }

@@ -77,6 +77,10 @@ mesh::document::SelectRegion ToolSet::region(std::int64_t node) const {
 
 bool ToolSet::allow_edit() { return std::ranges::all_of(with<GuardsEdits>(), &GuardsEdits::allow_edit); }
 
+bool ToolSet::hold(const mesh::document::Edit& edit, bool sends) {
+  return std::ranges::any_of(with<HoldsEdits>(), [&](HoldsEdits* tool) { return tool->hold(edit, sends); });
+}
+
 void ToolSet::edit_begins() {
   for (GuardsEdits* tool : with<GuardsEdits>()) tool->edit_begins();
 }

@@ -40,6 +40,8 @@ class ToolSet {
   bool pulling() const;
   void leave_previews();
   bool allow_edit();
+  /// HoldsEdits::hold of the first tool that does.
+  bool hold(const mesh::document::Edit& edit, bool sends);
   void watch(std::int64_t now_ns);
   /// Of the tool that sets it.
   mesh::document::Shaping shaping(std::int64_t grab, const mesh::Vec3& middle) const;
@@ -65,8 +67,8 @@ class ToolSet {
 
   All all_;
   std::vector<Moded> moded_;  ///< all of them
-  AbilityLists<TakesNumbers, HasHandle, Drags, Watches, HasMode, TakesBack, Clears, GuardsEdits, SetsShaping, SetsRegion, Previews,
-               MovesView, FollowsView, ColoursModel, HidesGlyphs, TracesPicture, HasStatus, HasTab, InRail, HasOptions, TellsLive,
+  AbilityLists<TakesNumbers, HasHandle, Drags, Watches, HasMode, TakesBack, Clears, GuardsEdits, HoldsEdits, SetsShaping, SetsRegion,
+               Previews, MovesView, FollowsView, ColoursModel, HidesGlyphs, TracesPicture, HasStatus, HasTab, InRail, HasOptions, TellsLive,
                HasMenuEntries, DrawsOverPicture, HasDialogs, AsksQuestions>
       abilities_;
 };

@@ -40,6 +40,7 @@ struct Separated {
 struct EditReport {
   std::string edit;
   std::size_t nodes_moved = 0;
+  std::optional<double> largest_move;  ///< of these nodes, between the states before and after; deck's length unit
   std::size_t elements_added = 0;
   std::size_t elements_removed = 0;
   quality::Counts before;

@@ -88,6 +88,7 @@ Result<Prepared> prepare(const Document& document, const Edit& edit, const Progr
   prepared->report.edit = name(edit);
   if (const EditReport& done = prepared->report; done.nodes_moved + done.elements_added + done.elements_removed > 0)
     say_weights(document.current().weight, prepared->next->weight, prepared->report);
+  if (prepared->report.nodes_moved > 0) prepared->report.largest_move = largest_move(document.current().model, prepared->next->model);
   prepared->report.before = document.current().counts;
   prepared->report.after = prepared->next->counts;
   prepared->report.clusters_before = document.current().clusters->size();

@@ -82,11 +82,13 @@ const std::vector<Module>& modules() {
       {"kiosk/tools/quality", {"kiosk/toolkit"}},
       {"kiosk/tools/mesh_operations", {"kiosk/toolkit"}},
       {"kiosk/tools/parts", {"kiosk/toolkit"}},
+      {"kiosk/tools/history", {"kiosk/toolkit"}},
       {"kiosk/tools/view", {"kiosk/toolkit"}},
       {"kiosk/calibration", {"kiosk/display", "kiosk/render"}},
       {"kiosk",
        {"kiosk/tools/files", "kiosk/tools/find", "kiosk/tools/comparison", "kiosk/tools/contact", "kiosk/tools/selection",
         "kiosk/tools/shaping", "kiosk/tools/pen", "kiosk/tools/quality", "kiosk/tools/mesh_operations", "kiosk/tools/parts",
+        "kiosk/tools/history",
         "kiosk/tools/view", "kiosk/calibration", "kiosk/display/kms", "kiosk/display/x11", "drivers/settings"}},
 
       {"cli", {"ipc/device", "ipc/model", "ipc/pen", "drivers/settings"}},

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "base/progress.h"
+#include "kiosk/link/result_words.h"
+#include "mesh/document/edit_kinds.h"
 
 namespace prismesh::kiosk::link {
 namespace {
@@ -66,25 +68,86 @@ TEST(NoticeWords, of_the_deck_s_warnings_the_worst_is_told_and_the_list_has_all)
   EXPECT_TRUE(notice_of_warnings(both)->lists_warnings);
 }
 
-TEST(NoticeWords, a_report_is_told_if_it_mends_or_has_something_to_tell) {
-  mesh::document::EditReport report;
-  report.edit = "translate";
-  EXPECT_FALSE(notice_of_report(report));
-  report.mass_before = 2;
-  report.mass_after = 2.5;
-  expect_notice(notice_of_report(report), Notice::Kind::information, "mass 2 \u2192 2.5");
-  report.centre_before = {0, 0, 0};
-  report.centre_after = {1, 0, 0};
-  expect_notice(notice_of_report(report), Notice::Kind::information, "mass 2 \u2192 2.5, centre of gravity (0 0 0) \u2192 (1 0 0)");
+/// The line of an edit as it is sent, with this report.
+std::string result_of(const mesh::document::Edit& edit, mesh::document::EditReport report) {
+  report.edit = mesh::document::name(edit);
+  return result_words(words_of_edit(edit, "mm"), report, "mm");
+}
 
+TEST(ResultWords, say_in_a_line_what_an_edit_did) {
+  using namespace mesh::document;
+  EditReport report;
+  report.nodes_moved = 12;
+  report.largest_move = 1.2984;
+  report.before.fail = report.after.fail = 2;
+  report.mass_before = 0.5;
+  report.mass_after = 0.504;
+  Rotate turn;
+  turn.degrees = 10;
+  EXPECT_EQ(result_of(turn, report), "Turned 10\u00b0: 12 nodes, at most 1.3 mm; fail 2 \u2192 2; mass +0.8 %");
+  report.nodes_moved = 1;
+  report.mass_after = 0.49985;
+  report.after.fail = 3;
+  Lift lift;
+  lift.distance = -12.345;
+  EXPECT_EQ(result_of(lift, report), "Lifted -12.3 mm: 1 node, at most 1.3 mm; fail 2 \u2192 3; mass -0.03 %");
+  report.mass_after = report.mass_before;
+  Translate move;
+  move.by = {3, 0, 4};
+  EXPECT_EQ(result_of(move, report), "Moved 5 mm: 1 node, at most 1.3 mm; fail 2 \u2192 3") << "the mass stays";
+  report.mass_before = 0;
+  EXPECT_EQ(result_of(move, report), "Moved 5 mm: 1 node, at most 1.3 mm; fail 2 \u2192 3") << "no share of nothing";
+  Move by_hand;
+  by_hand.by = {0, 0, 2};
+  by_hand.degrees = 3.5;
+  EXPECT_EQ(result_of(by_hand, report), "Moved 2 mm, turned 3.5\u00b0: 1 node, at most 1.3 mm; fail 2 \u2192 3");
+}
+
+TEST(ResultWords, of_what_mends_say_how_the_figures_and_the_structure_change) {
+  using namespace mesh::document;
+  EditReport report;
+  report.before = {10, 124, 4};
+  report.after = {134, 20, 0};
+  report.clusters_before = 2;
+  report.nodes_moved = 40;
+  report.largest_move = 0.25;
+  report.elements_added = 7;
+  report.elements_removed = 5;
+  EXPECT_EQ(result_of(Repair{}, report),
+            "Repaired: 40 nodes, at most 0.25 mm; 7 elements made, 5 removed; warn 124 \u2192 20; fail 4 \u2192 0; clusters of triangles 2 "
+            "\u2192 0");
+  EXPECT_EQ(result_of(Relax{}, EditReport()), "Relaxed: 0 nodes; warn 0 \u2192 0; fail 0 \u2192 0") << "that nothing changed is told, too";
+}
+
+TEST(ResultWords, of_undo_and_redo_say_what_they_undid) {
+  using namespace mesh::document;
+  EditReport report;
+  report.notes = {"undid lift"};
+  EXPECT_EQ(result_of(Undo{}, report), "Undid lift") << "it changed no figures";
+  report.nodes_moved = 3;
+  report.largest_move = 2;
+  report.before.fail = 9;
+  EXPECT_EQ(result_of(Undo{}, report), "Undid lift: 3 nodes, at most 2 mm; fail 9 \u2192 0");
+  EXPECT_EQ(result_of(Grow{}, report), "") << "what a selection did is in the picture";
+  EXPECT_EQ(result_of(SetParts{}, report), "");
+}
+
+TEST(NoticeWords, an_edit_is_noticed_only_for_what_its_line_has_no_room_for) {
   mesh::document::EditReport repair;
   repair.edit = "repair";
-  expect_notice(notice_of_report(repair), Notice::Kind::information, "repair: warn 0 \u2192 0, fail 0 \u2192 0");
-  repair.before.fail = 4;
-  repair.clusters_before = 2;
-  repair.notes = {"stopped in round 3"};
-  expect_notice(notice_of_report(repair), Notice::Kind::information,
-                "repair: warn 0 \u2192 0, fail 4 \u2192 0, clusters of triangles 2 \u2192 0\nstopped in round 3");
+  repair.mass_before = 2;
+  repair.mass_after = 2.5;
+  EXPECT_FALSE(notice_of_notes(repair, "Repaired: 3 nodes"));
+  repair.notes = {"stopped in round 3", "part 7 is locked"};
+  expect_notice(notice_of_notes(repair, "Repaired: 3 nodes"), Notice::Kind::information,
+                "Repaired: 3 nodes\nstopped in round 3\npart 7 is locked");
+  repair.edit = "hide";
+  expect_notice(notice_of_notes(repair, ""), Notice::Kind::information, "stopped in round 3\npart 7 is locked");
+  repair.edit = "undo";
+  repair.notes = {"undid lift"};
+  EXPECT_FALSE(notice_of_notes(repair, "Undid lift")) << "the line says it";
+  repair.notes.push_back("stopped after 2 of 3 steps");
+  expect_notice(notice_of_notes(repair, "Undid 2 steps"), Notice::Kind::information, "Undid 2 steps\nstopped after 2 of 3 steps");
 }
 
 TEST(NoticeWords, progress_says_what_is_done_and_how_to_stop_it) {

@@ -68,20 +68,22 @@ using ContrastOfPanels = panels::GuiTest;
 
 TEST_F(ContrastOfPanels, every_word_of_the_parts_can_be_read) {
   PartFacts facts;
-  facts.parts = {{1, "RAIL", 1200, 0xff4080c0, false, false}, {2, "SILL", 800, 0xff40c080, true, true}};
-  facts.files = {{"car.k", 1200, 1, false, false}, {"trim.k", 800, 1, true, true}};
+  facts.parts = {{1, "RAIL", 1200, {2, 0}, 0xff4080c0, false, false, true}, {2, "SILL", 800, {0, 3}, 0xff40c080, true, true, false}};
+  facts.files = {{"car.k", 1200, {1}, {2, 0}, false, false}, {"trim.k", 800, {2}, {0, 3}, true, true}};
+  PartTree tree;
+  tree.set_facts(std::move(facts));
   panels::PanelLayout layout{{1000, 640}};
   for (int round = 0; round < 3; ++round) {
     gui_->layout(layout.picture, 0.016, [&] {
       ImGui::SetNextWindowPos(ImVec2(0, 0));
       ImGui::SetNextWindowSize(ImVec2(400, 600));
       ImGui::Begin("parts", nullptr, ImGuiWindowFlags_NoTitleBar);
-      part_list(facts, layout);
+      part_list(tree, layout);
       ImGui::End();
     });
   }
   const FaintestWord faintest = faintest_word();
-  EXPECT_GT(faintest.glyphs, 40U) << "names, counts and the words only, hide and show";
+  EXPECT_GT(faintest.glyphs, 40U) << "names, counts, columns and actions";
   EXPECT_GE(faintest.contrast, kMinContrast);
 }
 

@@ -60,6 +60,59 @@ TEST_F(Scene, hidden_parts_are_neither_drawn_nor_picked) {
   }()) << "the picture is empty";
 }
 
+TEST_F(Scene, transparent_parts_mix_with_what_is_behind_and_picks_go_through_them) {
+  const TestSource source = two_plates();
+  show(source);
+  for (const char* profile : {"mono", "prism-mask"}) {
+    Picture picture = fitted(profile, "top", kSceneWidth, kSceneHeight);
+    picture.element_edges = picture.outlines = picture.quality_glyphs = false;
+    const Eigen::Vector2d pixel = pixel_of(picture, centre(source, 44));
+    const auto aim = aim_of(picture, kSceneWidth, kSceneHeight);
+    const auto drawn = [&](bool front, bool transparent) {
+      TestSource shown = source;
+      shown.hidden[0] = !front;
+      show(shown);
+      const std::array<PartPaint, 1> paints{{{std::nullopt, transparent}}};
+      EXPECT_TRUE(renderer_->set_part_paints(paints));
+      const Image image = draw(picture, kSceneWidth, kSceneHeight);
+      return Eigen::Vector3d(at(image, pixel)[0], at(image, pixel)[1], at(image, pixel)[2]);
+    };
+    const Eigen::Vector3d front = drawn(true, false), behind = drawn(false, false), mixed = drawn(true, true);
+    EXPECT_GT((front - behind).norm(), 20) << profile;
+    EXPECT_LE((mixed - (0.3 * front + 0.7 * behind)).cwiseAbs().maxCoeff(), 1.5) << profile << ": " << mixed.transpose();
+    const auto picked = renderer_->shell_at(aim, pixel);
+    ASSERT_TRUE(picked);
+    EXPECT_GE(picked->value, 100U) << profile << ": the plate behind";
+    const auto node = renderer_->node_near(aim, pixel, 16);
+    ASSERT_TRUE(node);
+    EXPECT_GE(node->value, 121U) << profile;
+    ASSERT_TRUE(renderer_->set_part_paints({}));
+    EXPECT_EQ(renderer_->shell_at(aim, pixel), mesh::ShellIndex(44)) << profile << ": the picks follow at once";
+  }
+}
+
+TEST_F(Scene, a_part_has_the_colour_chosen_for_it_while_parts_have_colours) {
+  show(two_plates());
+  Picture picture = fitted("mono", "top", kSceneWidth, kSceneHeight);
+  picture.element_edges = picture.outlines = picture.quality_glyphs = false;
+  const Eigen::Vector2d pixel = pixel_of(picture, centre(two_plates(), 44));
+  const auto hue = [&] {
+    const Image image = draw(picture, kSceneWidth, kSceneHeight);
+    const Eigen::Vector3d rgb(at(image, pixel)[0], at(image, pixel)[1], at(image, pixel)[2]);
+    return Eigen::Vector3d(rgb / rgb.maxCoeff());
+  };
+  const Eigen::Vector3d own = hue();
+  const std::array<PartPaint, 1> paints{{{Colour(0.2F, 0.4F, 0.8F), false}}};
+  ASSERT_TRUE(renderer_->set_part_paints(paints));
+  EXPECT_LE((hue() - Eigen::Vector3d(0.25, 0.5, 1)).cwiseAbs().maxCoeff(), 0.02) << "lit as every part, so the hue stays";
+  picture.colour = ColourMode::quality;
+  const Eigen::Vector3d passes = hue();
+  ASSERT_TRUE(renderer_->set_part_paints({}));
+  EXPECT_EQ(hue(), passes) << "grades keep their colours";
+  picture.colour = ColourMode::parts;
+  EXPECT_EQ(hue(), own);
+}
+
 TEST_F(Scene, picking_finds_what_is_visible) {
   const TestSource source = two_plates();
   show(source);

@@ -192,6 +192,9 @@ TEST_F(PathBox, a_save_takes_a_files_name_and_keeps_typing) {
   facts_.dialog = PathDialog::save_copy;
   open(folder_ / "car.k");
   EXPECT_EQ(entry_.typed, folder_ / "car_copy.k") << "Enter must not replace the deck";
+  facts_.dialog = PathDialog::save_as;
+  open(folder_ / "car.k");
+  EXPECT_EQ(entry_.typed, folder_ / "car.k");
   EXPECT_EQ(click(folder_ / "car.k"), std::nullopt) << "nothing is replaced by a click";
 }
 

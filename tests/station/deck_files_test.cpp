@@ -190,6 +190,20 @@ TEST_F(DeckFilesTest, the_empty_screen_opens_a_recent_deck) {
   EXPECT_FALSE(station_->kiosk().wait_for("document " + station_->deck().string()).empty());
 }
 
+TEST_F(DeckFilesTest, a_copy_over_the_open_deck_is_asked_about) {
+  start();
+  enter_path("ctrl+shift+c", station_->deck());
+  ASSERT_EQ(station_->kiosk().wait_for("asks "), "asks write replace 1 make 0");
+  station_->key("Escape");
+  EXPECT_FALSE(station_->kiosk().wait_for("asks nothing").empty());
+  EXPECT_EQ(whole_file(station_->deck()), original_);
+  station_->kiosk().skip_lines();
+  station_->key("ctrl+shift+c");
+  station_->key("Return");  // the name that is offered is another one
+  EXPECT_TRUE(station_->kiosk().wait_for("saved ").ends_with("sheet_copy.k"));
+  EXPECT_EQ(whole_file(station_->deck()), original_);
+}
+
 TEST_F(DeckFilesTest, a_kiosk_started_with_another_deck_asks_too) {
   start();
   const std::filesystem::path other = in_folder("other.k");

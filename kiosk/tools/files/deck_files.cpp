@@ -56,6 +56,13 @@ void DeckFiles::save_elsewhere(const std::filesystem::path& path, Elsewhere how,
   request.becomes = how == Elsewhere::becomes;
   request.stays_unsaved = how == Elsewhere::copy;
   request.asks = true;
+  // The server takes the deck's own path for saving in place, of which a copy isn't thought.
+  std::error_code missing;
+  if (how == Elsewhere::copy && std::filesystem::equivalent(*request.path, open_deck(), missing) && !missing) {
+    ipc::SaveWould would;
+    would.replace.push_back(*request.path);
+    return ask_about_writing(request, remark, would);
+  }
   write(request, remark);
 }
 

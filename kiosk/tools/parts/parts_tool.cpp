@@ -1,7 +1,7 @@
 #include "kiosk/tools/parts/parts_tool.h"
 
 #include <algorithm>
-#include <cmath>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -18,11 +18,6 @@ namespace {
 using toolkit::Pointer;
 
 using mesh::document::VisibilityAction;
-
-unsigned packed(const render::Colour& colour) {
-  const auto byte = [](float value) { return static_cast<unsigned>(std::lround(std::clamp(value, 0.0F, 1.0F) * 255)); };
-  return 0xff000000U | byte(colour.z()) << 16 | byte(colour.y()) << 8 | byte(colour.x());
-}
 
 /// Whether there are ids, and all are in a list; both ascend.
 bool all_in(const std::vector<std::int64_t>& ids, const std::vector<std::int64_t>& list) {
@@ -93,28 +88,85 @@ void PartsTool::show_all() {
 
 // --- the list ---
 
-PartFacts PartsTool::facts() const {
+/// The facts cost the number of parts and of shells that changed: they are made once for a generation and after a change of colours.
+void PartsTool::bring_facts() {
+  const auto& shown = context_.shown.snapshot;
+  const auto& state = context_.link.document.state();
+  Facts from{shown, state ? state->files.size() : 0, paint_changes_};
+  if (from == facts_from_) return;
+  facts_from_ = std::move(from);
+  tree_.set_facts(facts(errors_.count(*render::snapshot_source(shown))));
+}
+
+PartFacts PartsTool::facts(const std::vector<Errors>& errors) const {
   const ipc::SnapshotInfo& info = context_.shown.snapshot->info();
   PartFacts facts;
   facts.parts.reserve(info.parts.size());
+  std::unordered_map<std::int64_t, Errors> errors_of;
   std::vector<std::int64_t> hidden, locked;
   for (std::size_t i = 0; i < info.parts.size(); ++i) {
     const ipc::SnapshotPart& part = info.parts[i];
-    const render::Colour& colour = render::part_colours()[render::colour_of_part(i, info.parts.size())];
-    facts.parts.push_back({part.id, part.name, part.shells, packed(colour), part.hidden, part.locked});
+    const render::PartPaint paint = paint_of(part.id);
+    const render::Colour& own = render::part_colours()[render::colour_of_part(i, info.parts.size())];
+    facts.parts.push_back(
+        {part.id, part.name, part.shells, errors[i], packed(paint.colour.value_or(own)), part.hidden, part.locked, paint.transparent});
+    errors_of.emplace(part.id, errors[i]);
     if (part.hidden) hidden.push_back(part.id);
     if (part.locked) locked.push_back(part.id);
   }
   if (!context_.link.document.state() || context_.link.document.state()->files.size() < 2) return facts;  // one file is the deck itself
   std::sort(hidden.begin(), hidden.end());
   std::sort(locked.begin(), locked.end());
-  for (const ipc::DeckFile& file : context_.link.document.state()->files)
-    facts.files.push_back({file.name, file.shells, file.parts.size(), all_in(file.parts, hidden), all_in(file.parts, locked)});
+  for (const ipc::DeckFile& file : context_.link.document.state()->files) {
+    Errors sum;
+    for (const std::int64_t id : file.parts)
+      if (const auto its = errors_of.find(id); its != errors_of.end()) sum.warn += its->second.warn, sum.fail += its->second.fail;
+    facts.files.push_back({file.name, file.shells, file.parts, sum, all_in(file.parts, hidden), all_in(file.parts, locked)});
+  }
   return facts;
 }
 
 void PartsTool::draw_tab(panels::PanelLayout& layout) {
-  for (const SetVisibility& wanted : part_list(facts(), layout)) layout.ask([this, wanted] { set(wanted.on, wanted.action); });
+  bring_facts();
+  PartWishes wishes = part_list(tree_, layout);
+  for (const SetVisibility& wanted : wishes.edits) layout.ask([this, wanted] { set(wanted.on, wanted.action); });
+  for (const SetPaint& wanted : wishes.paints) layout.ask([this, wanted] { paint(wanted); });
+}
+
+// --- colours of this kiosk ---
+
+render::PartPaint PartsTool::paint_of(std::int64_t part) const {
+  const auto found = paints_.find(part);
+  return found == paints_.end() ? render::PartPaint{} : found->second;
+}
+
+void PartsTool::paint(const SetPaint& wanted) {
+  for (const std::int64_t id : wanted.parts) {
+    render::PartPaint& paint = paints_[id];
+    if (wanted.transparent) paint.transparent = *wanted.transparent;
+    if (wanted.colours) paint.colour = wanted.colour;
+  }
+  ++paint_changes_;
+  show_paints();
+}
+
+void PartsTool::show_paints() {
+  ++context_.changes;
+  std::vector<render::PartPaint> paints;
+  if (const auto& shown = context_.shown.snapshot; shown && !paints_.empty())
+    for (const ipc::SnapshotPart& part : shown->info().parts) paints.push_back(paint_of(part.id));
+  if (const Result<void> done = context_.renderer.set_part_paints(paints); !done)
+    context_.notices.say(notices::Notice::Kind::error, done.error().text());
+}
+
+void PartsTool::document_changed() {
+  tree_.forget();
+  errors_ = {};
+  facts_from_ = {};
+  if (paints_.empty()) return;
+  paints_.clear();
+  ++paint_changes_;
+  show_paints();
 }
 
 }  // namespace prismesh::kiosk::tools::parts

@@ -124,6 +124,7 @@ void PenTool::press(const ipc::PenState& state, const PenPose& pose) {
   move.axis = shaft(pose);
   move.shaping = context_.tools.shaping(id, selected ? context_.selection.centre.value_or(move.point) : move.point);
   if (!selected) move.shaping.on = context_.tools.region(id);
+  if (context_.tools.hold(move, false)) return;
   context_.tools.leave_previews();
   context_.tools.edit_begins();
   context_.link.drag.begin(move);

@@ -33,7 +33,7 @@ void QualityLink::select(const ipc::QualityBar& bar, const Wish& wish, mesh::doc
     edit.expr = found->expr;
     edit.kind = mesh::select::EntityKind::element;
     edit.mode = mode;
-    link_.edits.send(std::move(edit));
+    send_(std::move(edit));
   });
 }
 

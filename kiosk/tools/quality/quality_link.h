@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -12,7 +13,8 @@ namespace prismesh::kiosk::tools::quality {
 
 class QualityLink {
  public:
-  explicit QualityLink(link::ModelLink& link) : link_(link) {}
+  /// `send`: makes an edit.
+  QualityLink(link::ModelLink& link, std::function<void(mesh::document::Edit)> send) : link_(link), send_(std::move(send)) {}
 
   /// Which figures are wanted.
   struct Wish {
@@ -38,6 +40,7 @@ class QualityLink {
 
  private:
   link::ModelLink& link_;
+  std::function<void(mesh::document::Edit)> send_;
   std::optional<ipc::Quality> figures_;
   Wish figures_of_;
   std::optional<std::pair<Wish, std::uint64_t>> refused_;  ///< of which generation: asking again would change nothing

@@ -11,6 +11,7 @@
 
 #include "kiosk/panels/entry_box.h"
 #include "kiosk/toolkit/abilities.h"
+#include "kiosk/toolkit/edits.h"
 #include "kiosk/toolkit/tool.h"
 #include "kiosk/toolkit/tool_context.h"
 #include "kiosk/tools/quality/mend_limits.h"
@@ -28,7 +29,8 @@ class QualityTool final : public toolkit::Tool,
                           public toolkit::HasOptions,
                           public toolkit::HasDialogs {
  public:
-  explicit QualityTool(toolkit::ToolContext& context) : context_(context), link_(context.link) {}
+  explicit QualityTool(toolkit::ToolContext& context)
+      : context_(context), link_(context.link, [&context](mesh::document::Edit edit) { toolkit::send(context, std::move(edit)); }) {}
 
   std::string_view name() const override;
   void command(std::uint8_t number, const toolkit::Pointer& pointer) override;

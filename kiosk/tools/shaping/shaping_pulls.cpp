@@ -18,11 +18,14 @@ using toolkit::Pointer;
 
 void ShapingTool::begin_pull(Under handle, const Pixel& at) {
   if (!anchor_ || context_.link.drag.running() != nullptr || !context_.tools.allow_edit()) return;
+  const bool turning = handle == Under::turn_handle;
+  if (turning && !axis_) return;
+  const ShapedHandle shaped{handle, anchor_->id, context_.selection.centre.value_or(anchor_->at), axis_};
+  const mesh::document::Edit edit = edit_of(shaped, options_, {});
+  if (context_.tools.hold(edit, false)) return;
   context_.tools.leave_previews();
   context_.tools.edit_begins();
   const stereo::Aim now = toolkit::aim(context_.view);
-  const bool turning = handle == Under::turn_handle;
-  if (turning && !axis_) return;
   HandleGrab grab;
   grab.handle = handle;
   grab.at = turning ? ball_place(now, *axis_, anchor_->at) : anchor_->at;
@@ -32,8 +35,7 @@ void ShapingTool::begin_pull(Under handle, const Pixel& at) {
   pull_ = ActivePull{HandlePull(grab, now), at};
   handle_ = handle;
   pulled_ = {};
-  const ShapedHandle shaped{handle, anchor_->id, context_.selection.centre.value_or(anchor_->at), axis_};
-  context_.link.drag.begin(edit_of(shaped, options_, {}));
+  context_.link.drag.begin(edit);
   if (context_.link.drag.running() == nullptr) pull_.reset();
 }
 

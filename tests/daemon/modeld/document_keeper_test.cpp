@@ -140,6 +140,54 @@ TEST_F(Keeping, undo_reaches_back_beyond_a_save_in_place) {
   EXPECT_TRUE(test::compare_decks(original, test::whole_file(deck)).other_changes.empty());
 }
 
+TEST_F(Keeping, any_state_can_be_gone_to_across_a_save_and_a_restart_knows_it) {
+  const fs::path deck = folder_.sheet();
+  std::vector<std::uint64_t> numbers;
+  std::vector<double> heights;
+  double expected = 0;
+  {
+    DocumentKeeper first = keeper();
+    ASSERT_TRUE(first.open(request(deck), {}));
+    const auto remember = [&] {
+      numbers.push_back(first.document().current().number);
+      heights.push_back(height(first, 1313));
+    };
+    remember();
+    for (int i = 0; i < 4; ++i) {
+      if (i == 2) {
+        ASSERT_TRUE(first.save(std::nullopt, {}));
+      }
+      ASSERT_TRUE(first.edit(move_edit(1313, 0.25 * (i + 1))));
+      remember();
+    }
+    EXPECT_EQ(first.go_to(99, {}).error().message, "the history has no state 99 any more");
+    for (const std::size_t to : {0U, 4U, 1U, 3U, 3U, 2U}) {
+      const std::size_t steps = first.document().cursor > to ? first.document().cursor - to : to - first.document().cursor;
+      const std::uint64_t records = first.state().journalled_edits;
+      const double before = height(first, 1313);
+      const Result<EditReport> report = first.go_to(numbers[to], {});
+      ASSERT_TRUE(report) << report.error().text();
+      EXPECT_EQ(first.document().current().number, numbers[to]);
+      EXPECT_EQ(height(first, 1313), heights[to]);
+      EXPECT_EQ(report->nodes_moved, steps == 0 ? 0U : 1U);
+      EXPECT_NEAR(report->largest_move.value_or(0), std::abs(heights[to] - before), 1e-12);
+      EXPECT_EQ(first.state().journalled_edits, records + steps);
+      EXPECT_EQ(first.state().generations.size(), 5U) << "nothing is lost";
+    }
+    ASSERT_TRUE(first.go_to(numbers[1], {}));
+    expected = heights[1];
+    int asked = 0;
+    const Result<EditReport> stopped = first.go_to(numbers[4], [&](double, const Doing&) { return ++asked < 3; });
+    ASSERT_TRUE(stopped) << "it stays where it has come";
+    EXPECT_EQ(first.document().current().number, numbers[3]);
+    EXPECT_EQ(stopped->notes, (std::vector<std::string>{"did again: 2 steps", "stopped after 2 of 3 steps"}));
+    ASSERT_TRUE(first.go_to(numbers[1], {}));
+  }  // as if killed
+  DocumentKeeper second = keeper();
+  ASSERT_TRUE(second.reopen({}));
+  EXPECT_EQ(height(second, 1313), expected);
+}
+
 TEST_F(Keeping, a_save_that_rounded_writes_nothing_the_second_time) {
   const fs::path deck = folder_.sheet();
   DocumentKeeper first = keeper();

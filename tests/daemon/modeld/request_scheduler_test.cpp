@@ -376,6 +376,32 @@ TEST_F(RequestSchedulerTest, views_see_the_reported_state) {
   EXPECT_EQ(refusal(kOther, ipc::ApplyEdit{Undo{}}), "there is nothing to undo");
 }
 
+TEST_F(RequestSchedulerTest, goes_to_any_state_in_one_request_and_lists_them) {
+  const double before = height();
+  Translate up;
+  up.shaping.on = "1313";
+  up.by = {0, 0, 0.5};
+  for (int i = 0; i < 3; ++i) ask<ipc::Edited>(kOne, ipc::ApplyEdit{up});
+  const auto all = ask<ipc::History>(kOther, ipc::GetHistory{});
+  ASSERT_EQ(all.generations.size(), 4u);
+  EXPECT_EQ(all.generations[0].made_by, "open");
+  EXPECT_EQ(all.generations[3].made_by, "translate");
+  EXPECT_EQ(all.generation, all.generations[3].number);
+  const auto back = ask<ipc::Edited>(kOther, ipc::GoTo{all.generations[1].number});
+  EXPECT_EQ(back.generation, all.generations[1].number);
+  EXPECT_EQ(back.report.edit, "undo");
+  EXPECT_EQ(height(), before + 0.5);
+  const auto now = ask<ipc::History>(kOne, ipc::GetHistory{});
+  EXPECT_EQ(now.generation, all.generations[1].number);
+  EXPECT_EQ(now.generations.size(), 4u) << "the newer ones can be redone";
+  EXPECT_EQ(ask<ipc::Edited>(kOne, ipc::GoTo{all.generation}).report.edit, "redo");
+  EXPECT_EQ(height(), before + 1.5);
+  EXPECT_EQ(refusal(kOne, ipc::GoTo{12345}), "the history has no state 12345 any more");
+  ask<ipc::Done>(kOne, ipc::Close{true});
+  EXPECT_EQ(refusal(kOne, ipc::GoTo{all.generation}), "no document is open");
+  EXPECT_TRUE(ask<ipc::History>(kOne, ipc::GetHistory{}).generations.empty());
+}
+
 TEST_F(RequestSchedulerTest, shows_an_earlier_state_and_does_not_resend_what_the_client_has) {
   const double before = height();
   const std::uint64_t first = ask<ipc::DocumentState>(kOne, ipc::GetState{}).generation;

@@ -52,6 +52,10 @@ TEST(Messages, requests_survive_a_round_trip) {
   EXPECT_EQ(std::get<GetContacts>(contacts->request).gap, 0.25);
   EXPECT_EQ(std::get<GetContacts>(contacts->request).thickness, 1.5);
 
+  const auto state = decode_request(encode_request(4, GoTo{~std::uint64_t{0}}).value());
+  ASSERT_TRUE(state) << state.error().message;
+  EXPECT_EQ(std::get<GoTo>(state->request).generation, ~std::uint64_t{0});
+
   mesh::document::Select select;
   select.expr = "1-100";
   const auto edit = decode_request(encode_request(5, ApplyEdit{select}).value());
@@ -231,8 +235,9 @@ std::size_t place_of() {
 }
 
 TEST(RolesOfRequests, are_these) {
-  std::vector<std::size_t> looks{place_of<Hello>(),    place_of<Count>(),    place_of<GetQuality>(),  place_of<FindShells>(),
-                                 place_of<GetField>(), place_of<GetState>(), place_of<GetSnapshot>(), place_of<ReturnSnapshot>()};
+  std::vector<std::size_t> looks{place_of<Hello>(),      place_of<Count>(),       place_of<GetQuality>(),
+                                 place_of<FindShells>(), place_of<GetField>(),    place_of<GetState>(),
+                                 place_of<GetHistory>(), place_of<GetSnapshot>(), place_of<ReturnSnapshot>()};
   std::vector<std::size_t> watch, edit, devices, offer, serve;
   requests_of<Request>(Role::watch, watch);
   requests_of<Request>(Role::edit, edit);
