@@ -21,7 +21,7 @@ namespace {
 constexpr std::int64_t kCaretBlinkNs = 300'000'000;  ///< the caret of a text field blinks without any event
 constexpr std::int64_t kWheelRestNs = 250'000'000;   ///< the wheel counts as still this long after its last step
 constexpr std::int64_t kPointerRestNs = 60'000'000;  ///< the pointer rests this long after its last move
-constexpr std::int64_t kWordNs = 220'000'000;       ///< letters of a word come faster than that
+constexpr std::int64_t kWordNs = 220'000'000;        ///< letters of a word come faster than that
 constexpr std::int64_t kForEverNs = -1;
 constexpr std::size_t kManyShells = 200'000;            ///< a picture of more at rest may be too slow while the hand moves something
 constexpr std::int64_t kDaemonTriesNs = 1'000'000'000;  ///< between two attempts to reach a missing device daemon, or the pen's process

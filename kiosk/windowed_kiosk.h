@@ -62,7 +62,7 @@ class WindowedKiosk {
   std::optional<HeldLetter> held_;
   std::string word_;  ///< the plain letters that came one soon after the other
   std::int64_t last_letter_ns_ = 0;
-  bool edge_fed_ = false;      ///< the panels haven't handled a press or release yet
+  bool edge_fed_ = false;  ///< the panels haven't handled a press or release yet
   bool dirty_ = true;
   bool fullscreen_ = false;
   bool shown_moving_ = false;  ///< the last picture was drawn for speed

@@ -88,8 +88,7 @@ const std::vector<Module>& modules() {
       {"kiosk",
        {"kiosk/tools/files", "kiosk/tools/find", "kiosk/tools/comparison", "kiosk/tools/contact", "kiosk/tools/selection",
         "kiosk/tools/shaping", "kiosk/tools/pen", "kiosk/tools/quality", "kiosk/tools/mesh_operations", "kiosk/tools/parts",
-        "kiosk/tools/history",
-        "kiosk/tools/view", "kiosk/calibration", "kiosk/display/kms", "kiosk/display/x11", "drivers/settings"}},
+        "kiosk/tools/history", "kiosk/tools/view", "kiosk/calibration", "kiosk/display/kms", "kiosk/display/x11", "drivers/settings"}},
 
       {"cli", {"ipc/device", "ipc/model", "ipc/pen", "drivers/settings"}},
   };

@@ -89,6 +89,7 @@ class PathBox : public panels::GuiTest {
     return entered;
   }
   void open(const std::string& deck) {
+    for (int closed = 0; closed < 2; ++closed) gui_->layout({1000, 640}, 0.016, [] {});
     facts_.opened = true;
     facts_.deck = deck;
     for (int round = 0; round < 4; ++round) lay_out();

@@ -158,9 +158,10 @@ TEST_F(DeckFilesTest, a_deck_that_cannot_be_opened_is_told_in_the_box) {
   const std::filesystem::path missing = in_folder("missing.k");
   enter_path("ctrl+o", missing);
   ASSERT_FALSE(station_->kiosk().wait_for("item \"open problem\"").empty());
+  station_->settled_aim();
+  ASSERT_TRUE(station_->item("open problem") && station_->item("path"));
   EXPECT_NE(station_->item("open problem")->state.find("missing.k"), std::string::npos);
   EXPECT_EQ(station_->item("path")->state, missing.string()) << "one goes on with what was typed";
-  station_->settled_aim();
   station_->show_people("open_problem");
   const std::filesystem::path other = in_folder("other.k");
   write_sheet(other);
