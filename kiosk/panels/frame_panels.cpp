@@ -79,10 +79,10 @@ void bar_panel(const BarFacts& facts, const BarKeys& keys, std::span<const KeyBi
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
   push_frame_height({0, 0, 0, place.height + kGrid});
   begin_docked("Bar", place, ImGuiWindowFlags_MenuBar);
-  if (ImGui::BeginMenuBar()) {
-    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(kGrid, kGrid));  // of the menus
+  const bool begun = ImGui::BeginMenuBar();
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(kGrid, kGrid));  // of menus and hints
+  if (begun) {
     menus(all, more, layout);
-    ImGui::PopStyleVar(2);
     push_frame_height(place);
     const auto centre = [&](float height) { ImGui::SetCursorPosY(std::floor((place.height - height) / 2)); };
     ImGui::Dummy(ImVec2(kGrid / 2, 0));
@@ -124,8 +124,10 @@ void bar_panel(const BarFacts& facts, const BarKeys& keys, std::span<const KeyBi
       hint(keys.help);
       note_item(layout, "help", "");
     }
+    ImGui::PopStyleVar();
     ImGui::EndMenuBar();
   }
+  ImGui::PopStyleVar();
   ImGui::End();
   ImGui::PopStyleVar(2);
 }

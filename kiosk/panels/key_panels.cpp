@@ -24,13 +24,19 @@ void binding_list(const char* title, const Bindings& bindings, const Left& left,
   float label_width = 0;
   for (const auto& binding : bindings)
     label_width = std::max(label_width, ImGui::CalcTextSize(left(binding).data(), left(binding).data() + left(binding).size()).x);
+  label_width = std::min(label_width, 0.45F * width);  // long ones go on in a line of their own
   for (const auto& binding : bindings) {
     ImGui::SetCursorPosX(x);
+    const float top = ImGui::GetCursorPosY();
+    ImGui::PushTextWrapPos(x + label_width + kGrid);
     ImGui::TextUnformatted(left(binding).data(), left(binding).data() + left(binding).size());
-    ImGui::SameLine(x + label_width + 2 * kGrid);
+    ImGui::PopTextWrapPos();
+    const float bottom = ImGui::GetCursorPosY();
+    ImGui::SetCursorPos(ImVec2(x + label_width + 2 * kGrid, top));
     ImGui::PushTextWrapPos(x + width);
     ImGui::TextDisabled("%s", std::string(binding.meaning).c_str());
     ImGui::PopTextWrapPos();
+    ImGui::SetCursorPosY(std::max(bottom, ImGui::GetCursorPosY()));
   }
 }
 

@@ -10,10 +10,13 @@ namespace prismesh::kiosk::panels {
 bool OptionRow::next(float width) {
   if (full_) return false;
   if (!first_) ImGui::SameLine();
-  const float right = ImGui::GetWindowContentRegionMax().x;
-  if (ImGui::GetCursorPosX() + width > right) {
+  // What has no room is named by a sign, for which some is kept.
+  const float sign = ImGui::CalcTextSize("\u2026").x + kGrid;
+  if (ImGui::GetCursorPosX() + width + sign > ImGui::GetWindowContentRegionMax().x) {
     full_ = true;
-    if (!first_) ImGui::NewLine();
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextDisabled("\u2026");
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("the others are in the panel at the right");
     return false;
   }
   first_ = false;

@@ -9,6 +9,7 @@
 namespace prismesh::kiosk::toolkit {
 
 void take_in_hand(ToolContext& context, Tool* tool) {
+  context.tools.leave_mode();  // no mode acts unseen
   context.open.in_hand = tool;
   context.trace.line("panel " + (tool != nullptr ? std::string(tool->panel_name()) : "document"));
   context.tools.panel_changed();

@@ -37,6 +37,11 @@ TEST(FindCommands, words_in_any_order_and_their_beginnings_are_enough) {
   EXPECT_EQ(labels("mirr").front(), "M");
   EXPECT_THAT(labels("axis turn"), testing::Contains("A"));
   EXPECT_THAT(labels("save cop"), ElementsAre("Ctrl+Shift+C"));
+  EXPECT_THAT(labels("rotate"), testing::Contains("A")) << "the word of other programs";
+  EXPECT_THAT(labels("penetration"), testing::Contains("Ctrl+K"));
+  for (const char* word : {"translate", "move", "morph", "radius", "symmetry", "intersection", "smooth", "fix", "isolate", "blank",
+                           "unblank", "zoom", "stereo", "diff"})
+    EXPECT_THAT(labels(word), testing::Not(IsEmpty())) << word;
   EXPECT_THAT(labels("xyzzy"), IsEmpty());
   EXPECT_THAT(labels("undo xyzzy"), IsEmpty()) << "all words count";
 }

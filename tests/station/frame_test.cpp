@@ -165,7 +165,7 @@ TEST_F(FrameTest, a_command_is_found_by_its_words_and_carried_out) {
   station_->type("quality figures");
   ASSERT_FALSE(station_->kiosk()
                    .wait_until([](const std::string& line) {
-                     return line.starts_with("item \"found Mesh: show or hide quality") && line.ends_with("chosen");
+                     return line.starts_with("item \"found Mesh: quality: show or hide") && line.ends_with("chosen");
                    })
                    .empty());
   station_->key("Return");
@@ -173,7 +173,7 @@ TEST_F(FrameTest, a_command_is_found_by_its_words_and_carried_out) {
   station_->key("ctrl+p");
   EXPECT_FALSE(station_->kiosk()
                    .wait_until([](const std::string& line) {
-                     return line.starts_with("item \"found Mesh: show or hide quality") && line.ends_with("chosen");
+                     return line.starts_with("item \"found Mesh: quality: show or hide") && line.ends_with("chosen");
                    })
                    .empty())
       << "what was used last comes first";

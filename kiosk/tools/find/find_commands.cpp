@@ -1,10 +1,40 @@
 #include "kiosk/tools/find/find_commands.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 namespace prismesh::kiosk::tools::find {
 namespace {
+
+/// What engineers call a command that names itself otherwise: words of other programs, and a word of the command that is meant.
+struct OtherName {
+  std::string_view word, meaning;
+};
+constexpr std::array<OtherName, 16> kOtherNames{{{"rotate", "turn about"},
+                                                 {"translate", "how far to lift"},
+                                                 {"move", "how far to lift"},
+                                                 {"morph", "pulls fade out"},
+                                                 {"radius", "pulls fade out"},
+                                                 {"symmetry", "mirror the pull"},
+                                                 {"penetration", "parts cross"},
+                                                 {"intersection", "parts cross"},
+                                                 {"smooth", "relax"},
+                                                 {"fix", "repair"},
+                                                 {"isolate", "show only"},
+                                                 {"blank", "hide the part"},
+                                                 {"unblank", "show all parts"},
+                                                 {"zoom", "fit the"},
+                                                 {"stereo", "display profile"},
+                                                 {"diff", "compare"}}};
+
+/// The other names of a command, as text.
+std::string other_names(std::string_view meaning) {
+  std::string names;
+  for (const OtherName& other : kOtherNames)
+    if (meaning.find(other.meaning) != std::string_view::npos) names.append("  ").append(other.word);
+  return names;
+}
 
 char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
@@ -55,7 +85,7 @@ std::vector<std::size_t> find_commands(std::string_view words, std::span<const i
         used == earlier.end() ? 0 : 0.9 * static_cast<double>(used - earlier.begin() + 1) / static_cast<double>(earlier.size());
     const std::string_view menu = input::kMenuNames[static_cast<std::size_t>(command.menu)];
     std::string text(command.meaning);
-    text.append("  ").append(menu).append("  ").append(command.label);
+    text.append("  ").append(menu).append("  ").append(command.label).append(other_names(command.meaning));
     const double fit = all ? 1 : fit_of(words, text);
     if (fit > 0) ranked.emplace_back(fit + recent, i);
   }

@@ -29,7 +29,7 @@ constexpr input::Command command_of(OperationCommand command) { return {kName, s
 
 constexpr std::array kKeys = {
     KeyBinding{display::Key::f3, false, false, command_of(OperationCommand::take_in_hand), Menu::mesh, "F3",
-               "take the tool that changes single shells in hand"},
+               "mesh: split, collapse, merge, swap single shells"},
     KeyBinding{letter('D'), true, false, command_of(OperationCommand::split), Menu::mesh, "Ctrl+D",
                "split: the shell under the pointer, or two at their edge", input::kAsksForEdit | input::kAtPointer},
     KeyBinding{letter('B'), true, false, command_of(OperationCommand::collapse), Menu::mesh, "Ctrl+B",

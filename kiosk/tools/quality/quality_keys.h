@@ -9,7 +9,7 @@ namespace prismesh::kiosk::tools::quality {
 
 inline constexpr std::array kKeys = {
     input::KeyBinding{display::letter('J'), false, false, command_of(QualityCommand::panel), input::Menu::mesh, "J",
-                      "show or hide quality in figures"},
+                      "quality: show or hide its figures"},
     input::KeyBinding{display::Key::right, false, false, command_of(QualityCommand::next_error), input::Menu::mesh, "Right",
                       "go to the next error, worst first", input::kRepeats},
     input::KeyBinding{display::Key::left, false, false, command_of(QualityCommand::previous_error), input::Menu::mesh, "Left",

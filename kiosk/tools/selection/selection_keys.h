@@ -9,7 +9,7 @@ namespace prismesh::kiosk::tools::selection {
 
 inline constexpr std::array kKeys = {
     input::KeyBinding{display::Key::f2, false, false, command_of(SelectionCommand::take_in_hand), input::Menu::select, "F2",
-                      "take the tool that selects in hand"},
+                      "select: take it in hand, as at the start"},
     input::KeyBinding{display::letter('E'), false, false, command_of(SelectionCommand::expression), input::Menu::select, "E",
                       "select by an id expression", input::kAsksForEdit | input::kOpensField},
     input::KeyBinding{display::letter('L'), false, false, command_of(SelectionCommand::outline_kind), input::Menu::select, "L",

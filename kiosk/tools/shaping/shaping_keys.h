@@ -25,7 +25,7 @@ inline constexpr std::array kKeys = {
     input::KeyBinding{display::letter('D'), false, true, command_of(ShapingCommand::no_axis), input::Menu::shape, "Shift+D",
                       "no axis: lift, slide and move again"},
     input::KeyBinding{display::letter('T'), false, false, command_of(ShapingCommand::panel), input::Menu::shape, "T",
-                      "show or hide how pulls fade out"},
+                      "pull: show or hide how pulls fade out"},
     input::KeyBinding{display::letter('D'), false, false, command_of(ShapingCommand::falloff), input::Menu::shape, "D",
                       "next profile of the falloff"},
     input::KeyBinding{display::Key::up, true, false, command_of(ShapingCommand::flatter), input::Menu::shape, "Ctrl+Up",
