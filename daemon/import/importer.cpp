@@ -27,6 +27,7 @@ namespace prismesh::importer {
 namespace {
 
 constexpr ipc::LineLimits kRequestLimits{64 << 10, 1};
+constexpr double kProgressStep = 0.03;
 
 struct ImportJob {
   ipc::Import request;
@@ -82,14 +83,24 @@ Result<void> fill(const ipc::Descriptor& memory, const mesh::deck::OpenedDeck& o
   return {};
 }
 
+/// Sends the progress in steps of some hundredths: few enough to wait in the socket, where nobody reads them.
+Progress told_to(ipc::LineSocket& socket) {
+  return [&socket, told = 0.0](double fraction) mutable {
+    if (fraction < told + kProgressStep) return true;
+    told = fraction;
+    socket.queue(ipc::encode_import_event(ipc::ImportProgress{fraction}));
+    return socket.flush().has_value();
+  };
+}
+
 /// Reads the deck and fills the memory with it.
-Result<void> read(const ImportJob& job, const ipc::Descriptor& memory) {
+Result<void> read(const ImportJob& job, ipc::LineSocket& socket, const ipc::Descriptor& memory) {
   const ipc::ImportLimits& limits = job.request.limits;
   const std::filesystem::path path = std::filesystem::path(job.request.shown_folder) / job.request.main;
   try {
     const ConfinedFiles files(job.folder.get(), job.request.shown_folder);
     const mesh::deck::ReadingLimits reading{limits.files, limits.text_bytes, limits.nodes, limits.elements};
-    const Result<mesh::deck::OpenedDeck> opened = mesh::deck::open_within(files, reading, path);
+    const Result<mesh::deck::OpenedDeck> opened = mesh::deck::open_within(files, reading, path, told_to(socket));
     if (!opened) return fail(opened.error());
     return fill(memory, *opened, path.string(), limits);
   } catch (const std::bad_alloc&) {
@@ -121,7 +132,7 @@ Result<void> serve(ipc::Descriptor descriptor) {
   Result<std::vector<std::string>> unguarded =
       lock_in({job->folder.get(), socket.descriptor(), memory->get()}, {limits.memory_bytes, limits.cpu_s});
   if (!unguarded) return refuse(unguarded.error());
-  if (const Result<void> done = read(*job, *memory); !done) return refuse(done.error());
+  if (const Result<void> done = read(*job, socket, *memory); !done) return refuse(done.error());
   std::vector<ipc::Descriptor> handed;
   handed.push_back(std::move(*memory));
   return send(socket, ipc::Imported{std::move(*unguarded)}, std::move(handed));

@@ -8,6 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
@@ -99,15 +100,26 @@ Result<void> send(LineSocket& socket, const Import& request, Descriptor folder) 
   return {};
 }
 
-/// The next line; nothing: the program closed the connection. Errors: impatience, cancelled.
-Result<std::optional<std::string>> wait_for_line(LineSocket& socket, const std::filesystem::path& deck, const ImportOptions& options) {
+using FromImport = Said<ImportAnswer, ImportEvent>;
+
+/// The answer; nothing: the program closed the connection. Tells of the progress until then. Errors: a message that can't be read,
+/// impatience, cancelled.
+Result<std::optional<FromImport>> wait_for_answer(LineSocket& socket, const std::filesystem::path& deck, const ImportOptions& options) {
   const Clock::time_point until = Clock::now() + options.patience;
+  double fraction = 0;
   while (Clock::now() < until) {
-    if (options.stop && options.stop()) return fail(cancelled());
+    if (options.progress && !options.progress(fraction)) return fail(cancelled());
+    if (const auto line = socket.next_line()) {
+      Result<FromImport> said = decode_from_import(*line);
+      if (!said) return fail(std::move(said.error()));
+      const auto* event = std::get_if<ImportEvent>(&said->message);
+      if (event == nullptr) return std::optional(std::move(*said));
+      fraction = std::clamp(std::get<ImportProgress>(*event).fraction, fraction, 1.0);
+      continue;
+    }
     pollfd watched{socket.descriptor(), POLLIN, 0};
     if (::poll(&watched, 1, static_cast<int>(kGlance.count())) <= 0) continue;
-    if (const Result<bool> received = socket.receive(); !received) return std::optional<std::string>();
-    if (const auto line = socket.next_line()) return std::optional<std::string>(*line);
+    if (const Result<bool> received = socket.receive(); !received) return std::optional<FromImport>();
   }
   return fail(deck.string(), "reading it takes longer than the " + std::to_string(options.patience.count()) +
                                  " seconds that it may take here; it isn't opened");
@@ -149,19 +161,18 @@ Result<ImportedDeck> import_deck(const std::filesystem::path& deck, const Import
 
   const Import request{kImportProtocol, deck.filename().string(), folder.string(), options.limits};
   if (Result<void> sent = send(socket, request, std::move(opened_folder)); !sent) return fail(std::move(sent.error()));
-  const Result<std::optional<std::string>> line = wait_for_line(socket, deck, options);
-  if (!line) return fail(line.error());
-  if (!*line) return fail(deck.string(), why_it_ended(process.wait(), options.limits));
-  Result<ReceivedImportAnswer> received = decode_import_answer(**line);
-  if (!received) return fail(std::move(received.error()));
-  if (const auto* failed = std::get_if<Failed>(&received->answer)) return fail(error_from(*failed));
-  const Result<std::vector<Descriptor>> memory = socket.take_descriptors(received->descriptors);
+  Result<std::optional<FromImport>> said = wait_for_answer(socket, deck, options);
+  if (!said) return fail(std::move(said.error()));
+  if (!*said) return fail(deck.string(), why_it_ended(process.wait(), options.limits));
+  auto& answer = std::get<ImportAnswer>((*said)->message);
+  if (const auto* failed = std::get_if<Failed>(&answer)) return fail(error_from(*failed));
+  const Result<std::vector<Descriptor>> memory = socket.take_descriptors((*said)->descriptors);
   if (!memory) return fail(memory.error());
   if (memory->size() != 1) return fail("message from prismesh-import", "it comes without the deck");
   try {
     Result<mesh::deck::OpenedDeck> opened = take_over(memory->front(), request);
     if (!opened) return fail(std::move(opened.error()));
-    return ImportedDeck{std::move(*opened), std::move(std::get<Imported>(received->answer).unguarded)};
+    return ImportedDeck{std::move(*opened), std::move(std::get<Imported>(answer).unguarded)};
   } catch (const std::bad_alloc&) {
     return fail(deck.string(), "there isn't enough memory to take it over; it isn't opened");
   }

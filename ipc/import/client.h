@@ -3,11 +3,11 @@
 
 #include <chrono>
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "base/error.h"
+#include "base/progress.h"
 #include "ipc/import/messages.h"
 #include "mesh/deck/open.h"
 
@@ -22,7 +22,7 @@ struct ImportOptions {
   std::filesystem::path program;  ///< prismesh-import
   ImportLimits limits{};
   std::chrono::seconds patience{600};
-  std::function<bool()> stop{};  ///< asked a few times a second; true: give up. Empty: never
+  Progress progress{};  ///< called a few times a second
 };
 
 /// Starts the program and waits for its answer. The includes are those in the deck's folder and beneath it. Whatever happens to the

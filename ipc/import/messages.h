@@ -35,7 +35,13 @@ struct Imported {
   std::vector<std::string> unguarded;  ///< what this kernel can't forbid, as sentences; empty: nothing
 };
 
+/// Comes now and then before the answer.
+struct ImportProgress {
+  double fraction = 0;  ///< 0..1
+};
+
 using ImportRequest = std::variant<Import>;
 using ImportAnswer = std::variant<Imported, Failed>;
+using ImportEvent = std::variant<ImportProgress>;
 
 }  // namespace prismesh::ipc

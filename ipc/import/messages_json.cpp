@@ -9,6 +9,7 @@ PRISMESH_JSON_OBJECT(ipc::ImportLimits, f("memory_bytes", m.memory_bytes), f("cp
 PRISMESH_MESSAGE(ipc::Import, "import", f("protocol", m.protocol), f.required("main", m.main), f("shown_folder", m.shown_folder),
                  f("limits", m.limits));
 PRISMESH_MESSAGE(ipc::Imported, "imported", f("unguarded", m.unguarded));
+PRISMESH_MESSAGE(ipc::ImportProgress, "progress_made", f("fraction", m.fraction));
 
 }  // namespace prismesh::json
 
@@ -20,19 +21,16 @@ std::string encode_import_answer(const ImportAnswer& answer, std::size_t descrip
   return json_message::encode_answer(1, answer, descriptors);
 }
 
+std::string encode_import_event(const ImportEvent& event) { return json_message::encode_event(event); }
+
 Result<Import> decode_import_request(std::string_view line) {
   auto decoded = json_message::decode_request<ImportRequest>(line);
   if (!decoded) return fail("request", decoded.error().message);
   return std::get<Import>(std::move(decoded->request));
 }
 
-Result<ReceivedImportAnswer> decode_import_answer(std::string_view line) {
-  // prismesh-import tells of no events.
-  Result<Said<ImportAnswer, std::variant<Done>>> said = json_message::decode_said<ImportAnswer, std::variant<Done>>(line);
-  if (!said) return fail(std::move(said.error()));
-  auto* answer = std::get_if<ImportAnswer>(&said->message);
-  if (answer == nullptr) return fail("message from prismesh-import", "it is no answer");
-  return ReceivedImportAnswer{said->descriptors, std::move(*answer)};
+Result<Said<ImportAnswer, ImportEvent>> decode_from_import(std::string_view line) {
+  return json_message::decode_said<ImportAnswer, ImportEvent>(line);
 }
 
 }  // namespace prismesh::ipc

@@ -16,14 +16,11 @@ namespace prismesh::ipc {
 Result<std::string> encode_import_request(const Import& request);
 /// `descriptors`: how many are sent with the line.
 std::string encode_import_answer(const ImportAnswer& answer, std::size_t descriptors = 0);
+std::string encode_import_event(const ImportEvent& event);
 
 /// Errors name the field and, for an unknown one, the nearest known.
 Result<Import> decode_import_request(std::string_view line);
 
-struct ReceivedImportAnswer {
-  std::size_t descriptors = 0;  ///< that belong to the line
-  ImportAnswer answer;
-};
-Result<ReceivedImportAnswer> decode_import_answer(std::string_view line);
+Result<Said<ImportAnswer, ImportEvent>> decode_from_import(std::string_view line);
 
 }  // namespace prismesh::ipc

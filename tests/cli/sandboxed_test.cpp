@@ -38,7 +38,8 @@ TEST_F(SandboxedInfo, says_why_a_deck_isnt_opened) {
   EXPECT_EQ(none.status, kFailed);
   EXPECT_THAT(none.err, ::testing::AllOf(StartsWith(path("none.k")), HasSubstr("No such file")));
   EXPECT_EQ(none.out, "");
-  const Outcome bad = prismesh({"info", write("bad.k", "*KEYWORD\n*NODE\n       1     nothing\n*ELEMENT_MASS\n 1 1\n"), "--sandboxed", "--json"});
+  const Outcome bad =
+      prismesh({"info", write("bad.k", "*KEYWORD\n*NODE\n       1     nothing\n*ELEMENT_MASS\n 1 1\n"), "--sandboxed", "--json"});
   const Outcome plain = prismesh({"info", path("bad.k"), "--json"});
   EXPECT_EQ(bad.status, plain.status);
   EXPECT_EQ(bad.err, plain.err);
@@ -65,9 +66,9 @@ TEST_F(SandboxedInfo, tells_of_a_kill_in_the_middle_in_a_sentence) {
   ASSERT_EQ(prismesh({"sample", "--elements", "200000", "-o", path("large.k")}).status, kDone);
   ipc::ImportOptions options;
   options.program = test::programs_folder() / "prismesh-import";
-  options.stop = [] {
+  options.progress = [](double) {
     for (const pid_t child : children()) ::kill(child, SIGKILL);
-    return false;
+    return true;
   };
   const auto imported = ipc::import_deck(path("large.k"), options);
   ASSERT_FALSE(imported);

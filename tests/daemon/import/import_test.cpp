@@ -4,13 +4,14 @@
 #include <unistd.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <random>
 #include <string>
-#include <thread>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -99,6 +100,20 @@ TEST_F(Importing, gives_what_reading_without_a_sandbox_gives) {
   EXPECT_EQ(imported->opened.deck->files[1].bytes.text(), opened->deck->files[1].bytes.text());
   EXPECT_EQ(imported->opened.deck->content, opened->deck->content);
   EXPECT_EQ(imported->opened.deck->references->naming(mesh::Referred::node, 2).size(), 1u);
+}
+
+TEST_F(Importing, tells_of_its_progress) {
+  ASSERT_TRUE(mesh::deck::write_sample(folder / "sample.k", 20'000));
+  std::vector<double> heard;
+  options.progress = [&](double fraction) {
+    heard.push_back(fraction);
+    return true;
+  };
+  ASSERT_TRUE(import(folder / "sample.k"));
+  EXPECT_TRUE(std::is_sorted(heard.begin(), heard.end()));
+  EXPECT_EQ(heard.front(), 0);
+  EXPECT_GT(heard.back(), 0.5);
+  EXPECT_LE(heard.back(), 1);
 }
 
 TEST_F(Importing, reads_a_deck_in_the_working_folder) {
@@ -217,7 +232,7 @@ TEST_F(ImportScript, that_hangs_is_ended) {
   options.patience = std::chrono::seconds(1);
   EXPECT_THAT(refusal(deck), HasSubstr("longer than the 1 seconds"));
   options.patience = std::chrono::seconds(600);
-  options.stop = [] { return true; };
+  options.progress = [](double) { return false; };
   EXPECT_EQ(refusal(deck), "cancelled");
 }
 
