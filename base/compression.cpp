@@ -101,7 +101,7 @@ Result<void> unpack_gzip(std::span<const std::byte> in, GrowingText& out, const 
     const int result = inflate(&z, Z_NO_FLUSH);
     at += given - z.avail_in;
     out.took(room.size() - z.avail_out);
-    if (std::string why = out.refusal(at); !why.empty()) return fail("", std::move(why));
+    if (std::string why = out.refusal(at); !why.empty()) return fail(Error{"", 0, std::move(why), ErrorKind::over_limit});
     if (result == Z_STREAM_END) {
       const std::span<const std::byte> rest = in.subspan(at);
       if (is_zero(rest)) return {};
@@ -137,7 +137,7 @@ Result<void> unpack_zstd(std::span<const std::byte> in, GrowingText& out, const 
     // Zero at the end of each frame; the next one begins by itself.
     left = ZSTD_decompressStream(context.get(), &to, &from);
     out.took(to.pos);
-    if (std::string why = out.refusal(from.pos); !why.empty()) return fail("", std::move(why));
+    if (std::string why = out.refusal(from.pos); !why.empty()) return fail(Error{"", 0, std::move(why), ErrorKind::over_limit});
     if (ZSTD_isError(left)) return fail("", std::string("is damaged, or is no zstd file all through (") + ZSTD_getErrorName(left) + ")");
     if (left != 0 && from.pos == from.size && from.pos == before && to.pos == 0) return fail("", "is cut off: its zstd data end too early");
     if (progress && !progress(static_cast<double>(from.pos) / static_cast<double>(from.size))) return fail(cancelled());
@@ -181,7 +181,8 @@ Result<FileBytes> unpack(FileBytes file, const std::filesystem::path& path, cons
   if (packing == Packing::none) return file;
   GrowingText out(likely_size(in, packing), max_bytes);
   const Result<void> unpacked = packing == Packing::gzip ? unpack_gzip(in, out, progress) : unpack_zstd(in, out, progress);
-  if (!unpacked) return is_cancelled(unpacked.error()) ? fail(unpacked.error()) : fail(path.string(), unpacked.error().message);
+  if (!unpacked && is_cancelled(unpacked.error())) return fail(unpacked.error());
+  if (!unpacked) return fail(Error{path.string(), 0, unpacked.error().message, unpacked.error().kind});
   const std::size_t size = out.size();
   return FileBytes::unpacked(std::move(file), out.finish(), size);
 }

@@ -28,7 +28,7 @@ inline constexpr std::size_t kMaxUnpackedBytes = std::size_t{4} << 30;
 
 /// Unpacks a file and keeps its stored bytes beside the text; returns an unpacked file as it is. Reads all members of a gzip file and all
 /// frames of a zstd file. Stops as soon as it has unpacked more than `max_bytes`, or than max_unpacked of what it has read. Errors, with
-/// `path`: damaged, cut off, unpacks to more than that, other data after the packed data; cancelled, without it.
+/// `path`: damaged, cut off, unpacks to more than that (ErrorKind::over_limit), other data after the packed data; cancelled, without it.
 Result<FileBytes> unpack(FileBytes file, const std::filesystem::path& path, const Progress& progress = {},
                          std::size_t max_bytes = kMaxUnpackedBytes);
 

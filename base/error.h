@@ -11,7 +11,8 @@ namespace prismesh {
 
 enum class ErrorKind : std::uint8_t {
   failure,
-  cancelled,  ///< the work was told to stop (base/progress.h)
+  cancelled,   ///< the work was told to stop (base/progress.h)
+  over_limit,  ///< there is more of something than a limit allows
 };
 
 /// A recoverable failure. `file` is the user's file (or a device's or socket's name, or "expression"); `line` counts

@@ -84,6 +84,16 @@ FileBytes FileBytes::unpacked(FileBytes file, std::unique_ptr<char[]> text, std:
   return file;
 }
 
+FileBytes FileBytes::copy_of(std::string_view bytes, const FileIdentity& identity) {
+  FileBytes file;
+  file.size_ = bytes.size();
+  file.data_.reset(new char[bytes.size() + 1]);
+  if (!bytes.empty()) std::memcpy(file.data_.get(), bytes.data(), bytes.size());
+  file.data_[bytes.size()] = '\0';
+  file.identity_ = identity;
+  return file;
+}
+
 Result<FileIdentity> identify_file(const fs::path& path) {
   struct stat status {};
   if (::stat(path.c_str(), &status) != 0) return fail(path.string(), "can't be found: " + reason(errno));
@@ -94,8 +104,12 @@ Result<FileBytes> read_file(const fs::path& path) {
   // O_NONBLOCK: opening a pipe that nobody writes to must not hang.
   const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (file.get() < 0) return fail(path.string(), "can't be opened: " + reason(errno));
+  return read_file(file.get(), path);
+}
+
+Result<FileBytes> read_file(int descriptor, const fs::path& path) {
   struct stat before {};
-  if (::fstat(file.get(), &before) != 0) return fail(path.string(), "can't be read: " + reason(errno));
+  if (::fstat(descriptor, &before) != 0) return fail(path.string(), "can't be read: " + reason(errno));
   if (S_ISDIR(before.st_mode)) return fail(path.string(), "is a folder, not a file");
   if (!S_ISREG(before.st_mode)) return fail(path.string(), "is not a regular file");
 
@@ -107,11 +121,11 @@ Result<FileBytes> read_file(const fs::path& path) {
   bytes.data_[bytes.size_] = '\0';
   std::atomic<int> error = 0;
   parallel_for(bytes.size_, kReadPiece, [&](std::size_t begin, std::size_t end) {
-    if (const int failed = read_range(file.get(), bytes.data_.get() + begin, end - begin, begin); failed != 0) error = failed;
+    if (const int failed = read_range(descriptor, bytes.data_.get() + begin, end - begin, begin); failed != 0) error = failed;
   });
   if (error > 0) return fail(path.string(), "can't be read: " + reason(error));
   struct stat after {};
-  if (::fstat(file.get(), &after) != 0) return fail(path.string(), "can't be read: " + reason(errno));
+  if (::fstat(descriptor, &after) != 0) return fail(path.string(), "can't be read: " + reason(errno));
   // Another program may link or replace the file meanwhile: its bytes stay. Where they changed, the identity of before tells later.
   if (error != 0 || !is_same_but_for_name(identity_of(before), identity_of(after)))
     return fail(path.string(), "changed while it was being read; open it again");

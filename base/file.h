@@ -40,9 +40,11 @@ class FileBytes {
 
   /// The same file with its unpacked text: `size` characters and a NUL.
   static FileBytes unpacked(FileBytes file, std::unique_ptr<char[]> text, std::size_t size);
+  /// A file that another process has read. Throws std::bad_alloc.
+  static FileBytes copy_of(std::string_view bytes, const FileIdentity& identity);
 
  private:
-  friend Result<FileBytes> read_file(const std::filesystem::path& path);
+  friend Result<FileBytes> read_file(int descriptor, const std::filesystem::path& path);
   std::unique_ptr<char[]> data_;
   std::size_t size_ = 0;
   std::unique_ptr<char[]> packed_;
@@ -52,6 +54,8 @@ class FileBytes {
 
 /// Reads a regular file. Errors: it can't be opened or read, is a folder, or changed its size while it was read.
 Result<FileBytes> read_file(const std::filesystem::path& path);
+/// Reads a file that is open; `path` names it in errors. Errors: as above.
+Result<FileBytes> read_file(int descriptor, const std::filesystem::path& path);
 
 Result<FileIdentity> identify_file(const std::filesystem::path& path);
 

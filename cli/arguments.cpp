@@ -149,8 +149,14 @@ void add_common(Parser& parser) {
 void add_reading_commands(Parser& parser) {
   const auto [info_app, info_options] = add_command<InfoOptions>(parser, "info", "print what a deck contains", info);
   names_file(info_app->add_option("DECK", info_options->deck, "the deck's main file"))->required();
-  info_app->add_flag("--save-settings", info_options->save_settings,
-                     "also keep the target sizes and criteria in the settings file beside the deck, DECK.prismesh.toml");
+  CLI::Option* saves =
+      info_app->add_flag("--save-settings", info_options->save_settings,
+                         "also keep the target sizes and criteria in the settings file beside the deck, DECK.prismesh.toml");
+  info_app
+      ->add_flag("--sandboxed", info_options->sandboxed,
+                 "for a deck that nobody vouches for: read it in a process that can do nothing but read its folder; includes elsewhere and "
+                 "the settings file aren't read")
+      ->excludes(saves);
 
   const auto [check_app, check_options] = add_command<CheckOptions>(parser, "check", "measure the quality of a deck's shells", check);
   names_file(check_app->add_option("DECK", check_options->deck, "the deck's main file"))->required();

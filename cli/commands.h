@@ -27,6 +27,7 @@ struct Common {
 struct InfoOptions {
   std::filesystem::path deck;
   bool save_settings = false;  ///< keeps target sizes and criteria beside the deck
+  bool sandboxed = false;      ///< the deck is read by prismesh-import, locked in
 };
 int info(const InfoOptions& options, const Common& common, const Context& context);
 

@@ -91,7 +91,8 @@ void print_text(std::ostream& out, const mesh::document::Document& document) {
 }  // namespace
 
 int info(const InfoOptions& options, const Common& common, const Context& context) {
-  const Result<mesh::document::Document> document = open_deck(options.deck, common, context);
+  const Result<mesh::document::Document> document =
+      options.sandboxed ? open_sandboxed(options.deck, common, context) : open_deck(options.deck, common, context);
   if (!document) {
     say(context, document.error());
     return kFailed;

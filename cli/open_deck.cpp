@@ -1,7 +1,9 @@
 #include "cli/open_deck.h"
 
+#include "cli/program_beside.h"
 #include "cli/progress_bar.h"
 #include "cli/report_text.h"
+#include "ipc/import/client.h"
 #include "mesh/deck/save.h"
 #include "mesh/document/deck_settings.h"
 #include "mesh/document/save.h"
@@ -23,6 +25,27 @@ Result<mesh::document::Document> open_deck(const std::filesystem::path& deck, co
   Result<mesh::document::Document> document = mesh::document::open(deck, options);
   if (!document && document.error().file.empty()) document.error().file = deck.string();
   return document;
+}
+
+Result<mesh::document::Document> open_sandboxed(const std::filesystem::path& deck, const Common& common, const Context& context) {
+  const Result<std::filesystem::path> program = program_beside("prismesh-import", "which reads decks in a sandbox", "prismesh");
+  if (!program) return fail(program.error());
+  ipc::ImportOptions how;
+  how.program = *program;
+  MonotonicClock clock;
+  ProgressBar bar(context, "reading " + deck.filename().string(), clock);
+  how.progress = bar.progress();
+  Result<ipc::ImportedDeck> imported = ipc::import_deck(deck, how);
+  if (imported) {
+    for (const std::string& sentence : imported->unguarded) say(context, Error{deck.string(), 0, "note: " + sentence});
+    mesh::document::OpenOptions options = open_options(common);
+    options.read_settings_file = false;
+    Result<mesh::document::Document> document = mesh::document::open(deck, std::move(imported->opened), options);
+    if (document) return document;
+    imported = fail(std::move(document.error()));
+  }
+  if (imported.error().file.empty()) imported.error().file = deck.string();
+  return fail(std::move(imported.error()));
 }
 
 Result<mesh::deck::SaveReport> save_deck(const mesh::document::Document& document, const std::filesystem::path& target,

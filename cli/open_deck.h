@@ -14,6 +14,10 @@ mesh::document::OpenOptions open_options(const Common& common);
 /// Opens a deck with the common options and a progress bar. Errors: those of document::open, with a file; cancelled.
 Result<mesh::document::Document> open_deck(const std::filesystem::path& deck, const Common& common, const Context& context);
 
+/// Opens a deck that nobody vouches for: prismesh-import reads it, locked in. The settings beside the deck, which may come from the same
+/// source, aren't read. Says what the sandbox can't forbid here. Errors: those of ipc::import_deck and document::open, with a file.
+Result<mesh::document::Document> open_sandboxed(const std::filesystem::path& deck, const Common& common, const Context& context);
+
 /// Saves with a progress bar; when cancelled it writes nothing. Errors: those of document::save, with a file.
 Result<mesh::deck::SaveReport> save_deck(const mesh::document::Document& document, const std::filesystem::path& target,
                                          const Context& context);

@@ -14,6 +14,7 @@
 #include "cli/commands.h"
 #include "cli/figures.h"
 #include "cli/open_deck.h"
+#include "cli/program_beside.h"
 #include "cli/progress_bar.h"
 #include "cli/report_text.h"
 #include "ipc/model/field_page.h"
@@ -32,15 +33,6 @@ namespace {
 using mesh::document::FieldWish;
 
 constexpr const char* kKiosk = "prismesh-kiosk";
-
-Result<std::filesystem::path> find_kiosk() {
-  std::error_code error;
-  const std::filesystem::path own = std::filesystem::read_symlink("/proc/self/exe", error);
-  const std::filesystem::path kiosk = own.parent_path() / kKiosk;
-  if (error || access(kiosk.c_str(), X_OK) != 0)
-    return fail(kiosk.string(), "prismesh-kiosk, which draws pictures, isn't beside this program; the package prismesh-station has it");
-  return kiosk;
-}
 
 /// The snapshot's descriptors for the kiosk, open until it has ended.
 struct SealedSnapshot {
@@ -178,7 +170,7 @@ int render(const RenderOptions& options, const Common& common, const Context& co
     say(context, wish.error());
     return kWrongUsage;
   }
-  const Result<std::filesystem::path> kiosk = find_kiosk();
+  const Result<std::filesystem::path> kiosk = program_beside(kKiosk, "which draws pictures", "prismesh-station");
   if (!kiosk) return refuse(kiosk.error());
   Result<mesh::document::Document> document = open_deck(options.deck, common, context);
   if (!document) return refuse(document.error());

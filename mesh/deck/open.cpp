@@ -8,8 +8,11 @@
 #include <utility>
 
 #include "mesh/deck/assembly/assemble.h"
+#include "mesh/deck/assembly/bounded_files.h"
 #include "mesh/deck/assembly/file_set.h"
+#include "mesh/deck/assembly/files_on_disk.h"
 #include "mesh/deck/assembly/read_pieces.h"
+#include "mesh/deck/data/derived.h"
 #include "mesh/deck/data/on_disk.h"
 #include "mesh/deck/detect.h"
 #include "mesh/deck/findings.h"
@@ -31,26 +34,23 @@ constexpr std::size_t kBytesThatTell = 4096;
 /// Entities are numbered with 32 bits.
 constexpr std::size_t kMaxEntities = 0xfffffffeu;
 
-/// One hash over all files: their bytes' hashes and their names relative to the main file.
-Hash128 content_hash(const std::vector<SourceFile>& files, const std::vector<Hash128>& hashes) {
-  std::string all;
-  for (std::size_t i = 0; i < files.size(); ++i) {
-    all += hashes[i].hex();
-    // The main file may be renamed without becoming another deck.
-    if (i > 0) all += files[i].relative.generic_string();
-    all += '\n';
+/// The limit that the file passes with which the deck has too many nodes or elements.
+std::optional<Error> exceeded(const DeckContents& found, const ReadingLimits& limits) {
+  std::size_t nodes = 0;
+  std::size_t elements = 0;
+  for (const PieceCards& cards : found.cards) {
+    nodes += cards.node_id.size();
+    elements += cards.shells.id.size();
+    for (const RawElements& of_class : cards.elements) elements += of_class.id.size();
+    const auto refuse = [&](std::size_t limit, const char* what) {
+      return Error{found.files[cards.file].path.string(), 0,
+                   "with it the deck has more than the " + std::to_string(limit) + " " + what + " that are read of a deck here",
+                   ErrorKind::over_limit};
+    };
+    if (nodes > limits.nodes) return refuse(limits.nodes, "nodes");
+    if (elements > limits.elements) return refuse(limits.elements, "elements");
   }
-  return hash128(std::as_bytes(std::span(all)));
-}
-
-/// Finds the largest id of each file's entities.
-template <class Ids, class Field>
-void find_last_ids(const Ids& ids, const std::vector<CardRun>& runs, Field field, std::vector<LastIds>& last) {
-  for (std::size_t r = 0; r < runs.size(); ++r) {
-    const std::size_t end = r + 1 < runs.size() ? runs[r + 1].first : ids.size();
-    std::int64_t& greatest = last[runs[r].file].*field;
-    for (std::size_t i = runs[r].first; i < end; ++i) greatest = std::max(greatest, ids[i]);
-  }
+  return std::nullopt;
 }
 
 std::optional<Error> first_error(const DeckContents& found) {
@@ -94,9 +94,7 @@ Result<OpenedDeck> finish(DeckContents found, std::vector<Warning> of_saves, Wat
   deck->files = std::move(found.files);
   std::sort(deck->left_out_elements.begin(), deck->left_out_elements.end());
   deck->left_out_elements.erase(std::unique(deck->left_out_elements.begin(), deck->left_out_elements.end()), deck->left_out_elements.end());
-  deck->last_ids.resize(deck->files.size());
-  find_last_ids(opened.model.node_ids, deck->node_runs, &LastIds::node, deck->last_ids);
-  find_last_ids(opened.model.shell_ids, deck->shell_runs, &LastIds::shell, deck->last_ids);
+  deck->last_ids = last_ids_of(*deck, opened.model);
   deck->on_disk = std::make_shared<OnDisk>();
   for (std::size_t i = 0; i < deck->files.size(); ++i)
     deck->on_disk->files.push_back({deck->files[i].bytes.identity(), found.hashes[i], true});
@@ -127,25 +125,42 @@ Result<OpenedDeck> finish(DeckContents found, std::vector<Warning> of_saves, Wat
   return opened;
 }
 
+/// `path`: the main file. `of_saves`: warnings about saves that were cut off.
+Result<OpenedDeck> read_deck(const std::filesystem::path& path, BoundedFiles& reading, const ReadingLimits& limits,
+                             const StandIns& stand_ins, std::vector<Warning> of_saves, const Progress& progress) {
+  const Progress unpacking = [&](double fraction) { return !progress || progress(kUnpacked * fraction); };
+  Result<FileSet> files = FileSet::begin(path, reading, stand_ins, unpacking);
+  if (!files) return fail(std::move(files.error()));
+  const Detected detected = detect_format(files->files[0].bytes.text());
+  if (!detected.format) return fail(path.string(), "is no deck: it looks like " + detected.looks_like);
+  Watch watch(progress);
+  Result<DeckContents> found = read(*detected.format, std::move(*files), watch);
+  if (reading.exceeded()) return fail(*reading.exceeded());
+  if (!found) return fail(std::move(found.error()));
+  if (std::optional<Error> error = exceeded(*found, limits)) return fail(std::move(*error));
+  return finish(std::move(*found), std::move(of_saves), watch);
+}
+
 }  // namespace
 
 Result<OpenedDeck> open(const std::filesystem::path& path, const Progress& progress, const StandIns& stand_ins) {
   if (progress && !progress(0)) return fail(cancelled());
-  const Progress unpacking = [&](double fraction) { return !progress || progress(kUnpacked * fraction); };
   CutOffSave cut_off;
   if (stand_ins.empty()) {
     Result<CutOffSave> settled = settle_cut_off_save(path);
     if (!settled) return fail(std::move(settled.error()));
     cut_off = std::move(*settled);
   }
-  Result<FileSet> files = FileSet::begin(path, stand_ins.empty() ? cut_off.stand_ins : stand_ins, unpacking);
-  if (!files) return fail(std::move(files.error()));
-  const Detected detected = detect_format(files->files[0].bytes.text());
-  if (!detected.format) return fail(path.string(), "is no deck: it looks like " + detected.looks_like);
-  Watch watch(progress);
-  Result<DeckContents> found = read(*detected.format, std::move(*files), watch);
-  if (!found) return fail(std::move(found.error()));
-  return finish(std::move(*found), std::move(cut_off.warnings), watch);
+  const FilesOnDisk on_disk;
+  BoundedFiles reading(on_disk, {});
+  return read_deck(path, reading, {}, stand_ins.empty() ? cut_off.stand_ins : stand_ins, std::move(cut_off.warnings), progress);
+}
+
+Result<OpenedDeck> open_within(const FileAccess& files, const ReadingLimits& limits, const std::filesystem::path& path,
+                               const Progress& progress) {
+  if (progress && !progress(0)) return fail(cancelled());
+  BoundedFiles reading(files, limits);
+  return read_deck(path, reading, limits, {}, {}, progress);
 }
 
 }  // namespace prismesh::mesh::deck

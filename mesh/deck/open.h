@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/progress.h"
 #include "mesh/deck/data/deck.h"
+#include "mesh/deck/data/reading.h"
 #include "mesh/model/model.h"
 
 namespace prismesh::mesh::deck {
@@ -21,5 +22,10 @@ struct OpenedDeck {
 /// deck (with what it looks like); this build doesn't read its format (with its name); a card that matters is malformed (file and line); it
 /// is being saved; cancelled.
 Result<OpenedDeck> open(const std::filesystem::path& path, const Progress& progress = {}, const StandIns& stand_ins = {});
+
+/// Opens a deck whose files come from elsewhere, and no more of it than the limits allow. No save is looked for. Errors: as above; the
+/// limit that is exceeded, with its number and the file (ErrorKind::over_limit).
+Result<OpenedDeck> open_within(const FileAccess& files, const ReadingLimits& limits, const std::filesystem::path& path,
+                               const Progress& progress = {});
 
 }  // namespace prismesh::mesh::deck

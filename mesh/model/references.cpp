@@ -40,6 +40,15 @@ bool same_set(const Referrer& a, const Referrer& b) {
   return &a == &b || (!a.group.empty() && a.id == b.id && a.group == b.group && a.keyword == b.keyword);
 }
 
+References References::of(std::vector<Referrer> referrers, std::vector<Reference> references, std::vector<UnreadText> unread) {
+  References all;
+  all.referrers_ = std::move(referrers);
+  all.references_ = std::move(references);
+  all.unread_ = std::move(unread);
+  all.finish();
+  return all;
+}
+
 void References::add(Reference reference) {
   if (reference.last < 1 || reference.last < reference.first) return;
   if (reference.step < 1) reference.step = 1;

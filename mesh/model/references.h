@@ -98,6 +98,9 @@ struct UnreadText {
 
 class References {
  public:
+  /// References in any order, as they are. Precondition: each is of one of the referrers, with 1 <= first <= last and step >= 1.
+  static References of(std::vector<Referrer> referrers, std::vector<Reference> references, std::vector<UnreadText> unread);
+
   std::uint32_t add(Referrer referrer) {
     referrers_.push_back(std::move(referrer));
     return static_cast<std::uint32_t>(referrers_.size() - 1);

@@ -53,9 +53,11 @@ const std::vector<Module>& modules() {
       {"ipc/wire", {"base/json"}},
       {"ipc/device", {"ipc/wire", "drivers/prism_servo"}},
       {"ipc/pen", {"ipc/wire", "drivers/haptics"}},
+      {"ipc/import", {"ipc/wire", "mesh/deck"}},
       {"ipc/model", {"ipc/wire", "mesh/document"}},
 
       {"daemon/common", {"ipc/wire"}},
+      {"daemon/import", {"ipc/import", "daemon/common"}},
       {"daemon/modeld", {"ipc/model", "ipc/pen", "mesh/field", "daemon/common", "drivers/settings"}},
       {"daemon/deviced/realtime", {"base"}},
       {"daemon/deviced/pen", {"ipc/pen", "daemon/common", "daemon/deviced/realtime", "drivers/haptic_pen/framed", "drivers/settings"}},
@@ -90,7 +92,7 @@ const std::vector<Module>& modules() {
         "kiosk/tools/shaping", "kiosk/tools/pen", "kiosk/tools/quality", "kiosk/tools/mesh_operations", "kiosk/tools/parts",
         "kiosk/tools/history", "kiosk/tools/view", "kiosk/calibration", "kiosk/display/kms", "kiosk/display/x11", "drivers/settings"}},
 
-      {"cli", {"ipc/device", "ipc/model", "ipc/pen", "drivers/settings"}},
+      {"cli", {"ipc/device", "ipc/import", "ipc/model", "ipc/pen", "drivers/settings"}},
   };
   return kModules;
 }

@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <string_view>
 
+#include "ipc/import/messages_json.h"
 #include "ipc/model/messages_json.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -23,6 +24,17 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
   } else if (message.error().message.empty()) {
     std::abort();
+  }
+  // What a hostile prismesh-import may say, and a request to it.
+  if (const auto message = decode_from_import(line)) {
+    if (const auto* answer = std::get_if<ImportAnswer>(&message->message))
+      if (!decode_from_import(encode_import_answer(*answer, message->descriptors))) std::abort();
+  } else if (message.error().message.empty()) {
+    std::abort();
+  }
+  if (const auto request = decode_import_request(line)) {
+    const auto again = encode_import_request(*request);
+    if (!again || !decode_import_request(*again)) std::abort();
   }
   return 0;
 }

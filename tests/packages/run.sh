@@ -45,8 +45,8 @@ check "the desktop entry is valid" bash -c "said=\$(desktop-file-validate '$work
 check "the icon and the types are well-formed" xmllint --noout "$work/files/usr/share/icons/hicolor/scalable/apps/prismesh.svg" \
   "$work/files/usr/share/mime/packages/prismesh.xml"
 check "decks have their types, other files keep theirs" "$here/types.sh" "$work/files/usr/share/mime/packages/prismesh.xml"
-check "the pages and the completion are there" bash -c "cd '$work/files/usr/share' && ls man/man1/prismesh{,-kiosk}.1.gz man/man8/prismesh-{modeld,deviced}.8.gz \
-  bash-completion/completions/prismesh{,-kiosk,-modeld,-deviced}"
+check "the pages and the completion are there" bash -c "cd '$work/files/usr/share' && ls man/man1/prismesh{,-kiosk}.1.gz man/man8/prismesh-{modeld,deviced,import}.8.gz \
+  bash-completion/completions/prismesh{,-kiosk,-modeld,-deviced,-import}"
 check "each page that a unit names is there" bash -c "cd '$work/files' && sed -n 's|^Documentation=file:/||p' lib/systemd/system/* | sort -u |
   while read -r page; do cat \"\$page\" >/dev/null || exit 1; done"
 check "programs are hardened" bash -c "for each in '$work/files'/usr/bin/*; do

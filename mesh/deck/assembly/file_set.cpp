@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "base/compression.h"
-
 namespace prismesh::mesh::deck {
 namespace {
 
@@ -33,19 +31,6 @@ std::string with_slashes(std::string name) {
   return name;
 }
 
-bool is_file(const fs::path& path) {
-  std::error_code error;
-  return fs::exists(path, error) && !fs::is_directory(path, error);
-}
-
-std::optional<fs::path> find(const std::string& name, std::span<const fs::path> folders) {
-  if (name.empty() || name.find('\0') != std::string::npos) return std::nullopt;
-  for (const std::string& spelled : {name, with_slashes(name)})
-    for (const fs::path& folder : folders)
-      if (is_file(folder / spelled)) return folder / spelled;
-  return std::nullopt;
-}
-
 /// The file that is read for this one.
 const fs::path& stand_in(const StandIns& stand_ins, const fs::path& file) {
   if (stand_ins.empty()) return file;
@@ -53,37 +38,45 @@ const fs::path& stand_in(const StandIns& stand_ins, const fs::path& file) {
   return at == stand_ins.end() ? file : at->second;
 }
 
-/// Why no file of the name is found.
-std::string why_not_found(const std::string& name, std::span<const fs::path> folders) {
-  if (name.empty()) return "has no name";
-  if (name.find('\0') != std::string::npos) return "has a name with a NUL byte in it";
-  for (const fs::path& folder : folders) {
-    std::error_code error;
-    if (fs::is_directory(folder / with_slashes(name), error)) return "is a folder";
-  }
-  return "isn't there";
-}
-
 }  // namespace
 
-Result<FileSet> FileSet::begin(fs::path main, const StandIns& stand_ins, const Progress& progress) {
-  Result<FileBytes> bytes = read_file(stand_in(stand_ins, main));
+Result<FileSet> FileSet::begin(fs::path main, BoundedFiles& reading, const StandIns& stand_ins, const Progress& progress) {
+  Result<FileBytes> bytes = reading.read(stand_in(stand_ins, main), main, progress);
   if (!bytes) return fail(std::move(bytes.error()));
-  bytes = unpack(std::move(*bytes), main, progress);
-  if (!bytes) return fail(std::move(bytes.error()));
-  return FileSet(std::move(main), std::move(*bytes), stand_ins);
+  return FileSet(std::move(main), std::move(*bytes), reading, stand_ins);
 }
 
 FileSet FileSet::again(FileSet files) {
-  return {std::move(files.files[0].path), std::move(files.files[0].bytes), std::move(files.stand_ins_)};
+  files.reading_->begin_again(files.files[0].bytes);
+  return {std::move(files.files[0].path), std::move(files.files[0].bytes), *files.reading_, std::move(files.stand_ins_)};
 }
 
-FileSet::FileSet(fs::path main, FileBytes bytes, StandIns stand_ins)
-    : stand_ins_(std::move(stand_ins)), main_folder_(normal(main).parent_path()) {
-  by_canonical_[canonical_name(main)] = 0;
-  if (bytes.is_packed()) unpacked_bytes_ = bytes.text().size();
+FileSet::FileSet(fs::path main, FileBytes bytes, BoundedFiles& reading, StandIns stand_ins)
+    : reading_(&reading), stand_ins_(std::move(stand_ins)), main_folder_(normal(main).parent_path()) {
+  by_canonical_[reading.access().canonical_name(main)] = 0;
   fs::path name = main.filename();
   files.push_back({std::move(main), std::move(name), std::move(bytes)});
+}
+
+/// Nothing, and `reason`: no file of the name is found, or none may be read.
+std::optional<fs::path> FileSet::find(const std::string& name, std::span<const fs::path> folders, std::string& reason) const {
+  reason = "isn't there";
+  if (name.empty()) reason = "has no name";
+  if (name.find('\0') != std::string::npos) reason = "has a name with a NUL byte in it";
+  if (name.empty() || name.find('\0') != std::string::npos) return std::nullopt;
+  const FileAccess& access = reading_->access();
+  if (access.is_confined() && (fs::path(name).is_absolute() || fs::path(with_slashes(name)).is_absolute())) {
+    reason = "has an absolute name; of this deck only files beside its main file and beneath are read";
+    return std::nullopt;
+  }
+  for (const std::string& spelled : {name, with_slashes(name)})
+    for (const fs::path& folder : folders) {
+      const FileKind kind = access.kind_of(folder / spelled);
+      if (kind == FileKind::file) return folder / spelled;
+      if (kind == FileKind::folder) reason = "is a folder";
+      if (kind == FileKind::refused) reason = "leads out of the deck's folder, or through a link; such files of this deck aren't read";
+    }
+  return std::nullopt;
 }
 
 /// Searches once for each pair of file and name: a deck may have many includes, and a search is slow.
@@ -91,10 +84,7 @@ std::uint32_t FileSet::include(std::uint32_t from, const std::string& name, std:
   const auto [at, first] = known_.try_emplace({from, name}, kNoFile, "isn't there");
   auto& [file, why] = at->second;
   if (first && missing.size() < kMaxFiles) {
-    if (const std::optional<fs::path> found = find(name, folders))
-      file = open(*found, name, why);
-    else
-      why = why_not_found(name, folders);
+    if (const std::optional<fs::path> found = find(name, folders, why)) file = open(*found, name, why);
   }
   if (file != kNoFile) return file;
   if (missing.size() < kMaxFiles) missing.push_back(name);
@@ -111,12 +101,9 @@ std::uint32_t FileSet::include_unread(std::uint32_t from, const std::string& nam
 }
 
 bool FileSet::accompany(const std::string& name, std::span<const fs::path> folders, std::string& reason) {
-  const std::optional<fs::path> found = find(name, folders);
-  if (!found) {
-    reason = why_not_found(name, folders);
-    return false;
-  }
-  const std::string canonical = canonical_name(*found);
+  const std::optional<fs::path> found = find(name, folders, reason);
+  if (!found) return false;
+  const std::string canonical = reading_->access().canonical_name(*found);
   if (companions.size() < kMaxFiles && !by_canonical_.contains(canonical) && accompanying_.insert(canonical).second)
     companions.push_back({*found, relative_name(*found, name)});
   return true;
@@ -129,19 +116,17 @@ fs::path FileSet::relative_name(const fs::path& found, const std::string& name) 
 
 /// Returns the index of the file and reads it if it wasn't read before. kNoFile: it can't be read; `reason` gets why.
 std::uint32_t FileSet::open(const fs::path& found, const std::string& name, std::string& reason) {
-  const std::string canonical = canonical_name(found);
+  const std::string canonical = reading_->access().canonical_name(found);
   if (const auto at = by_canonical_.find(canonical); at != by_canonical_.end()) return at->second;
   if (files.size() >= kMaxFiles) {
     reason = "is one of too many";
     return kNoFile;
   }
-  Result<FileBytes> bytes = read_file(stand_in(stand_ins_, found));
-  if (bytes) bytes = unpack(std::move(*bytes), found, {}, kMaxUnpackedBytes - std::min(unpacked_bytes_, kMaxUnpackedBytes));
+  Result<FileBytes> bytes = reading_->read(stand_in(stand_ins_, found), found);
   if (!bytes) {
     reason = bytes.error().message;
     return kNoFile;
   }
-  if (bytes->is_packed()) unpacked_bytes_ += bytes->text().size();
   const auto index = static_cast<std::uint32_t>(files.size());
   by_canonical_[canonical] = index;
   files.push_back({found, relative_name(found, name), std::move(*bytes)});

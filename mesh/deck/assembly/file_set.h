@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "mesh/deck/assembly/bounded_files.h"
 #include "mesh/deck/data/deck.h"
 
 namespace prismesh::mesh::deck {
@@ -21,9 +22,9 @@ class FileSet {
  public:
   static constexpr std::uint32_t kNoFile = 0xffffffffu;
 
-  /// Reads the main file. Where a file has a stand-in (StagedSave), the stand-in is read under the file's name. Errors: the file can't be
-  /// read or unpacked, cancelled.
-  static Result<FileSet> begin(std::filesystem::path main, const StandIns& stand_ins, const Progress& progress);
+  /// Reads the main file. Where a file has a stand-in (StagedSave), the stand-in is read under the file's name. `reading` must outlive
+  /// the set. Errors: the file can't be read or unpacked, a limit is exceeded, cancelled.
+  static Result<FileSet> begin(std::filesystem::path main, BoundedFiles& reading, const StandIns& stand_ins, const Progress& progress);
   /// Keeps the main file only, for another walk over the deck.
   static FileSet again(FileSet files);
 
@@ -46,13 +47,15 @@ class FileSet {
   std::vector<CompanionFile> companions;  ///< each once
 
  private:
-  FileSet(std::filesystem::path main, FileBytes bytes, StandIns stand_ins);
+  FileSet(std::filesystem::path main, FileBytes bytes, BoundedFiles& reading, StandIns stand_ins);
+  std::optional<std::filesystem::path> find(const std::string& name, std::span<const std::filesystem::path> folders,
+                                            std::string& reason) const;
   std::filesystem::path relative_name(const std::filesystem::path& found, const std::string& name) const;
   std::uint32_t open(const std::filesystem::path& found, const std::string& name, std::string& reason);
 
+  BoundedFiles* reading_;  ///< never null
   StandIns stand_ins_;
   std::filesystem::path main_folder_;
-  std::size_t unpacked_bytes_ = 0;  ///< of all packed files
   std::map<std::string, std::uint32_t> by_canonical_;
   std::set<std::string> accompanying_;                                                            ///< canonical names of companions
   std::map<std::pair<std::uint32_t, std::string>, std::pair<std::uint32_t, std::string>> known_;  ///< file or reason, by who names it
