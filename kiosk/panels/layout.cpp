@@ -62,7 +62,7 @@ void begin_docked(const char* name, const Place& place, ImGuiWindowFlags flags) 
 void begin_centred(const char* name, const Place& room, float width) {
   ImGui::SetNextWindowPos(ImVec2(std::floor(room.x + room.width / 2), std::floor(room.y + room.height / 2)), 0, ImVec2(0.5f, 0.5f));
   ImGui::SetNextWindowSize(ImVec2(std::min(width, room.width - 2 * kMargin), 0));
-  ImGui::Begin(name, nullptr, kPanelFlags | ImGuiWindowFlags_AlwaysAutoResize);
+  ImGui::Begin(name, nullptr, (kPanelFlags & ~ImGuiWindowFlags_NoScrollbar) | ImGuiWindowFlags_AlwaysAutoResize);
 }
 
 }  // namespace prismesh::kiosk::panels
