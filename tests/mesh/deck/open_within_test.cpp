@@ -64,7 +64,8 @@ TEST(OpenWithin, allows_what_just_fits) {
 
 /// An encrypted block is found only while pieces are read; then the deck is read a second time.
 TEST(OpenWithin, counts_a_deck_that_is_read_twice_once) {
-  const std::string main = "*KEYWORD\n*INCLUDE\na.k\n*NODE\n" + std::string("-----BEGIN PGP MESSAGE-----\nabc\n-----END PGP MESSAGE-----\n*END\n");
+  const std::string main =
+      "*KEYWORD\n*INCLUDE\na.k\n*NODE\n" + std::string("-----BEGIN PGP MESSAGE-----\nabc\n-----END PGP MESSAGE-----\n*END\n");
   const FilesInMemory files({{"main.k", main}, {"a.k", kTwoNodes}});
   const auto opened = open_within(files, {2, main.size() + kTwoNodes.size(), 2, 0}, "main.k");
   ASSERT_TRUE(opened) << opened.error().text();
