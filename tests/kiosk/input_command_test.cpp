@@ -129,6 +129,7 @@ TEST(KeysTest, rows_keep_the_order_of_help_and_menu) {
                                              "M",
                                              "Shift+M",
                                              "Shift+W",
+                                             "Ctrl+Shift+D",
                                              "J",
                                              "Right",
                                              "Left",

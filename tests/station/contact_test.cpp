@@ -30,6 +30,25 @@ class ContactTest : public StationTestCase {
   HatDeck hat_;
 };
 
+TEST_F(ContactTest, a_pull_that_keeps_parts_apart_stops_before_they_touch) {
+  select_hat();
+  station_->kiosk().skip_lines();
+  station_->key("t");
+  ASSERT_FALSE(heard("panel shaping").empty());
+  station_->key("ctrl+shift+d");
+  station_->settled_aim();
+  EXPECT_NE(station_->item("status setting")->state.find("parts kept apart"), std::string::npos);
+  station_->kiosk().skip_lines();
+  station_->pull_arrow(-30);  // through the plate, were it free
+  station_->release();
+  EXPECT_FALSE(heard("drag committed").empty());
+  EXPECT_TRUE(station_->kiosk().last("drag touches: ").empty());
+  station_->kiosk().skip_lines();
+  station_->key("ctrl+k");
+  const std::string places = heard("contact generation ");
+  EXPECT_NE(places.find(" cross 0 "), std::string::npos) << places;
+}
+
 TEST_F(ContactTest, a_touch_is_said_before_the_part_is_let_go_and_nothing_remains_of_it) {
   select_hat();
   station_->pull_arrow(-30);  // down through the plate that closes it, 3 below

@@ -56,6 +56,7 @@ void QualityTool::relax(Scope scope) {
   edit.scope = scope;
   edit.max_move = limits_.max_move;
   edit.angle = context_.selection.crease_angle;
+  if (context_.keeps_apart) edit.contact = mesh::document::ContactRule::keep_apart;
   toolkit::send(context_, edit);
 }
 
@@ -72,6 +73,7 @@ void QualityTool::relax_from(const Pointer& pointer) {
   edit.threshold = limits_.threshold;
   edit.max_move = limits_.max_move;
   edit.angle = context_.selection.crease_angle;
+  if (context_.keeps_apart) edit.contact = mesh::document::ContactRule::keep_apart;
   toolkit::send(context_, edit);
 }
 
@@ -80,6 +82,7 @@ void QualityTool::repair(Scope scope) {
   edit.scope = scope;
   edit.max_move = limits_.max_move;
   edit.angle = context_.selection.crease_angle;
+  if (context_.keeps_apart) edit.contact = mesh::document::ContactRule::keep_apart;
   toolkit::send(context_, edit);
 }
 

@@ -34,6 +34,7 @@ enum class ShapingCommand : std::uint8_t {
   symmetry,
   symmetry_place,
   across_welds,
+  keep_apart,
 };
 
 constexpr input::Command command_of(ShapingCommand command) { return {kName, static_cast<std::uint8_t>(command)}; }

@@ -54,6 +54,8 @@ inline constexpr std::array kKeys = {
                       "type where the mirror stands"},
     input::KeyBinding{display::letter('W'), false, true, command_of(ShapingCommand::across_welds), input::Menu::shape, "Shift+W",
                       "pulls go on over welded sheets, or not"},
+    input::KeyBinding{display::letter('D'), true, true, command_of(ShapingCommand::keep_apart), input::Menu::shape, "Ctrl+Shift+D",
+                      "keep parts apart: pulls, relaxing and repairing make no new contact, or they may"},
 };
 
 }  // namespace prismesh::kiosk::tools::shaping

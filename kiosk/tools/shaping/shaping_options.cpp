@@ -47,6 +47,7 @@ mesh::document::Shaping shaping_of(const ShapingOptions& options, const ShapedHa
   shaping.weights.origin = options.origin;
   shaping.weights.across_welds = options.across_welds;
   shaping.max_move = options.max_move;
+  if (options.keep_apart) shaping.contact = mesh::document::ContactRule::keep_apart;
   if (options.symmetry != DeckAxis::none) {
     const Vec3 normal = unit(options.symmetry);
     shaping.symmetry = mesh::document::Symmetry{normal * options.symmetry_place.value_or(shaped.middle.dot(normal)), normal};

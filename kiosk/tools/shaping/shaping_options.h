@@ -39,6 +39,7 @@ struct ShapingOptions {
   mesh::shape::Origin origin = mesh::shape::Origin::grab;
   bool across_welds = false;
   bool each_normal = false;  ///< of a lift
+  bool keep_apart = false;   ///< pulls stop before they make shells touch
   std::optional<double> max_move;
   DeckAxis symmetry = DeckAxis::none;    ///< the plane's normal
   std::optional<double> symmetry_place;  ///< where the plane cuts that axis; empty: at the middle of the selection when the edit begins

@@ -95,6 +95,7 @@ std::optional<ShapingOptions> shaping_panel(const ShapingFacts& facts, PanelLayo
   set_by("free edges", std::string(name_of(now.free_ends)), ShapingCommand::free_ends, layout);
   check("the whole free edge is the grab", now.origin == mesh::shape::Origin::free_edge, command_of(ShapingCommand::origin), layout);
   check("across welded sheets", now.across_welds, command_of(ShapingCommand::across_welds), layout);
+  check("keep parts apart", now.keep_apart, command_of(ShapingCommand::keep_apart), layout);
   check("lift: each along its own normal", now.each_normal, command_of(ShapingCommand::each_normal), layout);
   set_by("moves at most", now.max_move ? length_text(*now.max_move, facts.length_unit) : "no limit", ShapingCommand::move_limit, layout);
   section("Mirror");

@@ -116,6 +116,7 @@ void ShapingTool::change_option(ShapingCommand command) {
     case ShapingCommand::each_normal: options_.each_normal = !options_.each_normal; break;
     case ShapingCommand::symmetry: options_.symmetry = next(options_.symmetry); break;
     case ShapingCommand::across_welds: options_.across_welds = !options_.across_welds; break;
+    case ShapingCommand::keep_apart: context_.keeps_apart = options_.keep_apart = !options_.keep_apart; break;
     case ShapingCommand::move_limit: type_for(Typing::For::move_limit, options_.max_move); break;
     case ShapingCommand::symmetry_place: type_for(Typing::For::symmetry_place, options_.symmetry_place); break;
     default: break;

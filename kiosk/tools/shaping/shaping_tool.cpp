@@ -203,13 +203,14 @@ void ShapingTool::draw_options(panels::OptionRow& row) {
   row.value("free edges", std::string(name_of(options_.free_ends)), key(ShapingCommand::free_ends));
   row.value("along", options_.along.what, key(ShapingCommand::along));
   row.value("at most", options_.max_move ? panels::length_text(*options_.max_move, unit) : "no limit", key(ShapingCommand::move_limit));
+  row.toggle("keep apart", options_.keep_apart, key(ShapingCommand::keep_apart));
   row.command("by number", key(ShapingCommand::type_number));
 }
 
 std::string ShapingTool::setting_words() const {
   std::string words = "Pull \u00b7 " + std::string(mesh::shape::name(options_.profile)) + " \u00b7 mirror ";
   words += options_.symmetry == DeckAxis::none ? "off" : kDeckAxisNames[static_cast<std::size_t>(options_.symmetry)];
-  return words;
+  return options_.keep_apart ? words + " \u00b7 parts kept apart" : words;
 }
 
 std::string ShapingTool::live_words() const {
