@@ -86,6 +86,7 @@ void rail(ToolContext& context, PanelLayout& layout) {
     for (const toolkit::RailEntry& entry : tool->rail()) entries.push_back(entry);
   std::ranges::sort(entries, {}, &toolkit::RailEntry::place);
   std::vector<panels::RailButton> buttons;
+  buttons.reserve(entries.size());
   for (const toolkit::RailEntry& entry : entries) buttons.push_back({entry.label, entry.key, entry.on});
   panels::rail_panel(buttons, layout);
 }

@@ -252,8 +252,10 @@ Result<EditReport> DocumentKeeper::go_to(std::uint64_t generation, const Progres
   }
   report.edit = back ? "undo" : "redo";
   if (step > 0) report.notes.insert(report.notes.begin(), (back ? "undid " : "did again: ") + counted(step, "step"));
-  report.nodes_moved = mesh::moved_nodes(from->model, document.current().model).size();
-  if (report.nodes_moved > 0) report.largest_move = mesh::largest_move(from->model, document.current().model);
+  const mesh::NodeSet moved = mesh::moved_nodes(from->model, document.current().model);
+  report.nodes_moved = moved.size();
+  report.largest_move.reset();
+  if (!moved.empty()) report.largest_move = mesh::largest_move(from->model, document.current().model, moved);
   return report;
 }
 

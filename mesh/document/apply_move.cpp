@@ -100,6 +100,7 @@ Result<void> move(const Document& document, const Edit& edit, Generation& next, 
     if (!position.allFinite()) return fail("", std::string(name(edit)) + ": the displacement is too large to be a coordinate");
   const NodeSet moved = put_positions(motion->nodes, positions, next.model.positions);
   report.nodes_moved = moved.size();
+  report.largest_move = largest_move(document.current().model, next.model, moved);
   next.surface = std::make_shared<const Model>(next.model);
   const ShellSet touched = shells_touching(next.model, moved);
   quality::rejudge(next.model, judged_by(document), touched, next.quality, next.counts);

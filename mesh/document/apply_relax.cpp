@@ -146,6 +146,7 @@ void put_positions(const Document& document, const relax::Relaxed& relaxed, Gene
   NodeSet moved;
   std::set_union(relaxed.nodes.begin(), relaxed.nodes.end(), followed.begin(), followed.end(), std::back_inserter(moved));
   report.nodes_moved = moved.size();
+  report.largest_move = largest_move(document.current().model, next.model, moved);
   const ShellSet touched = shells_touching(next.model, relaxed.nodes);
   quality::rejudge(next.model, judged_by(document), touched, next.quality, next.counts);
   update_weight(document.current(), touched, next);

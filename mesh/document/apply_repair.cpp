@@ -339,6 +339,7 @@ Result<void> apply_edit(const Document& document, const Repair& edit, Generation
   if (reached->generation != nullptr) {
     next = *reached->generation;
     report.nodes_moved = reached->figures.nodes_moved;
+    report.largest_move = reached->figures.largest_move;
     report.elements_added = reached->figures.elements_added;
     report.elements_removed = reached->figures.elements_removed;
     report.notes.insert(report.notes.end(), reached->figures.notes.begin(), reached->figures.notes.end());

@@ -86,6 +86,7 @@ void put_positions(const Document& document, const contact::Separation& done, Ge
   NodeSet moved;
   std::set_union(done.nodes.begin(), done.nodes.end(), followed.begin(), followed.end(), std::back_inserter(moved));
   report.nodes_moved = moved.size();
+  report.largest_move = largest_move(document.current().model, next.model, moved);
   next.surface = std::make_shared<const Model>(next.model);
   const ShellSet touched = shells_touching(next.model, done.nodes);
   quality::rejudge(next.model, judged_by(document), touched, next.quality, next.counts);
@@ -119,7 +120,9 @@ Result<void> follow_up(const Document& document, FollowUp follow, const NodeSet&
   std::erase_if(back.nodes, [&](NodeIndex node) { return next.model.is_removed(node); });
   std::erase_if(back.shells, [&](ShellIndex shell) { return next.model.is_removed(shell); });
   put_selection(next, selection_of(next), back);
-  report.nodes_moved = moved_nodes(document.current().model, next.model).size();
+  const NodeSet all = moved_nodes(document.current().model, next.model);
+  report.nodes_moved = all.size();
+  report.largest_move = largest_move(document.current().model, next.model, all);
   report.elements_added = more.elements_added;
   report.elements_removed = more.elements_removed;
   report.triangle_pairs = more.triangle_pairs;

@@ -24,7 +24,9 @@ Result<Prepared> prepare_step(const Document& document, bool back) {
   prepared.next = document.generations[back ? document.cursor - 1 : document.cursor + 1];
   const Model &from = document.current().model, &to = prepared.next->model;
   const Changes changes = back ? changes_between(to, from) : changes_between(from, to);
-  prepared.report.nodes_moved = moved_nodes(from, to).size();
+  const NodeSet moved = moved_nodes(from, to);
+  prepared.report.nodes_moved = moved.size();
+  if (!moved.empty()) prepared.report.largest_move = largest_move(from, to, moved);
   prepared.report.elements_added = (back ? changes.removed_shells : changes.added_shells).size();
   prepared.report.elements_removed = (back ? changes.added_shells : changes.removed_shells).size();
   prepared.report.notes.push_back((back ? "undid " : "did again: ") + (back ? document.current() : *prepared.next).made_by);
@@ -88,7 +90,7 @@ Result<Prepared> prepare(const Document& document, const Edit& edit, const Progr
   prepared->report.edit = name(edit);
   if (const EditReport& done = prepared->report; done.nodes_moved + done.elements_added + done.elements_removed > 0)
     say_weights(document.current().weight, prepared->next->weight, prepared->report);
-  if (prepared->report.nodes_moved > 0) prepared->report.largest_move = largest_move(document.current().model, prepared->next->model);
+  if (prepared->report.nodes_moved == 0) prepared->report.largest_move.reset();
   prepared->report.before = document.current().counts;
   prepared->report.after = prepared->next->counts;
   prepared->report.clusters_before = document.current().clusters->size();

@@ -149,6 +149,7 @@ Result<void> restructure(const Document& document, const repair::Restructuring& 
   carry_selection(changes, next);
   mark_parts_at(corners_of_changed(before.model, next.model, changes), next);
   report.nodes_moved = moved.size();
+  report.largest_move = largest_move(before.model, next.model, moved);
   report.elements_added = changes.added_shells.size();
   report.elements_removed = changes.removed_shells.size();
   const std::vector<std::string>& missing = document.deck->missing_files;

@@ -26,11 +26,8 @@ PartIndex Model::find_part(std::int64_t id) const {
   return PartIndex(static_cast<std::size_t>(at - parts->begin()));
 }
 
-namespace {
-
-/// Calls visit(node, from, to) for each node whose place differs, in ascending order.
-template <class Visit>
-void each_moved(const Model& a, const Model& b, const Visit& visit) {
+std::vector<NodeIndex> moved_nodes(const Model& a, const Model& b) {
+  std::vector<NodeIndex> moved;
   const std::size_t chunks = std::min(a.positions.chunk_count(), b.positions.chunk_count());
   for (std::size_t c = 0; c < chunks; ++c) {
     // equal addresses mean equal content, also where one array is longer than the other
@@ -39,22 +36,15 @@ void each_moved(const Model& a, const Model& b, const Visit& visit) {
     const std::span<const Vec3> to = b.positions.chunk(c);
     for (std::size_t i = 0; i < std::min(from.size(), to.size()); ++i) {
       const NodeIndex node(c * kChunkSize + i);
-      if (from[i] != to[i] && !a.is_removed(node) && !b.is_removed(node)) visit(node, from[i], to[i]);
+      if (from[i] != to[i] && !a.is_removed(node) && !b.is_removed(node)) moved.push_back(node);
     }
   }
-}
-
-}  // namespace
-
-std::vector<NodeIndex> moved_nodes(const Model& a, const Model& b) {
-  std::vector<NodeIndex> moved;
-  each_moved(a, b, [&](NodeIndex node, const Vec3&, const Vec3&) { moved.push_back(node); });
   return moved;
 }
 
-double largest_move(const Model& a, const Model& b) {
+double largest_move(const Model& a, const Model& b, std::span<const NodeIndex> nodes) {
   double largest = 0;
-  each_moved(a, b, [&](NodeIndex, const Vec3& from, const Vec3& to) { largest = std::max(largest, (to - from).squaredNorm()); });
+  for (const NodeIndex node : nodes) largest = std::max(largest, (b.positions[node.value] - a.positions[node.value]).squaredNorm());
   return std::sqrt(largest);
 }
 

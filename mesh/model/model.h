@@ -124,7 +124,7 @@ struct Model {
 /// Returns the nodes of both models whose positions differ, ascending; added and removed nodes don't count. Cost: what differs, since
 /// shared chunks are skipped.
 std::vector<NodeIndex> moved_nodes(const Model& a, const Model& b);
-/// The longest way of such a node; 0 if there is none.
-double largest_move(const Model& a, const Model& b);
+/// The longest way of these nodes of both; 0 if there are none.
+double largest_move(const Model& a, const Model& b, std::span<const NodeIndex> nodes);
 
 }  // namespace prismesh::mesh

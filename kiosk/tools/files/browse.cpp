@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "base/letter_case.h"
 #include "kiosk/panels/text.h"
 
 namespace prismesh::kiosk::tools::files {
@@ -16,12 +17,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostEntries = 20000;
-
-std::string lower_case(std::string_view text) {
-  std::string lower(text);
-  std::ranges::transform(lower, lower.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  return lower;
-}
 
 std::string size_words(std::uintmax_t bytes) {
   if (bytes < 1000) return fmt::format("{} B", bytes);
@@ -35,11 +30,11 @@ std::string size_words(std::uintmax_t bytes) {
 }  // namespace
 
 bool is_deck_name(std::string_view name) {
-  std::string lower = lower_case(name);
+  std::string plain = lower(name);
   for (const std::string_view packed : {".gz", ".zst"})
-    if (lower.ends_with(packed)) lower.resize(lower.size() - packed.size());
+    if (plain.ends_with(packed)) plain.resize(plain.size() - packed.size());
   constexpr std::array<std::string_view, 10> kEndings{".k", ".key", ".dyn", ".inp", ".bdf", ".nas", ".dat", ".fem", ".rad", ".inc"};
-  return std::ranges::any_of(kEndings, [&](std::string_view ending) { return lower.ends_with(ending); });
+  return std::ranges::any_of(kEndings, [&](std::string_view ending) { return plain.ends_with(ending); });
 }
 
 std::string copy_name(const std::string& deck) {
@@ -63,7 +58,7 @@ std::string copy_name(const std::string& deck) {
 Browsed browse(const std::string& typed, bool all) {
   const std::size_t slash = typed.rfind('/');
   const std::string folder = slash == std::string::npos ? "" : typed.substr(0, slash + 1);
-  const std::string piece = lower_case(slash == std::string::npos ? typed : typed.substr(slash + 1));
+  const std::string piece = lower(slash == std::string::npos ? typed : typed.substr(slash + 1));
   Browsed found;
   std::error_code error;
   std::vector<BrowseRow> holding;
@@ -78,7 +73,7 @@ Browsed browse(const std::string& typed, bool all) {
       found.cut = true;
       break;
     }
-    const std::string name = entry->path().filename().string(), lower = lower_case(name);
+    const std::string name = entry->path().filename().string(), plain = lower(name);
     if (name.starts_with('.') && !piece.starts_with('.')) continue;
     std::error_code unreadable;
     const bool is_folder = entry->is_directory(unreadable);
@@ -90,9 +85,9 @@ Browsed browse(const std::string& typed, bool all) {
       const std::uintmax_t size = entry->file_size(unreadable);
       row.detail = unreadable ? "" : size_words(size);
     }
-    if (lower.starts_with(piece))
+    if (plain.starts_with(piece))
       found.rows.push_back(std::move(row));
-    else if (lower.find(piece) != std::string::npos)
+    else if (plain.find(piece) != std::string::npos)
       holding.push_back(std::move(row));
   }
   if (error) found.problem = fmt::format("{}: {}", folder, error.message());

@@ -4,6 +4,8 @@
 #include <array>
 #include <utility>
 
+#include "base/letter_case.h"
+
 namespace prismesh::kiosk::tools::find {
 namespace {
 
@@ -36,20 +38,12 @@ std::string other_names(std::string_view meaning) {
   return names;
 }
 
-char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
-
-std::string lower_case(std::string_view text) {
-  std::string all(text);
-  std::ranges::transform(all, all.begin(), lower);
-  return all;
-}
-
 bool is_letter_or_digit(char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || (c & 0x80) != 0; }
 
 }  // namespace
 
 double fit_of(std::string_view words, std::string_view text) {
-  const std::string all = lower_case(text), wanted = lower_case(words);
+  const std::string all = lower(text), wanted = lower(words);
   double fit = 1;
   std::size_t at = 0;
   while (at < wanted.size()) {

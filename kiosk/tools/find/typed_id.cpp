@@ -5,6 +5,8 @@
 #include <string>
 #include <utility>
 
+#include "base/letter_case.h"
+
 namespace prismesh::kiosk::tools::find {
 
 std::optional<TypedId> typed_id(std::string_view text) {
@@ -13,7 +15,7 @@ std::optional<TypedId> typed_id(std::string_view text) {
   for (; at < text.size() && (text[at] < '0' || text[at] > '9'); ++at) {
     const char c = text[at];
     if (c == ' ' || c == ':' || c == '#' || c == '=') continue;
-    word += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    word += lower(c);
   }
   using Kind = TypedId::Kind;
   constexpr std::array<std::pair<std::string_view, Kind>, 10> kKinds{{{"", Kind::any},

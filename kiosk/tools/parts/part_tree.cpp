@@ -7,10 +7,10 @@
 #include <unordered_map>
 #include <utility>
 
+#include "base/letter_case.h"
+
 namespace prismesh::kiosk::tools::parts {
 namespace {
-
-char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
 bool contains(std::string_view text, std::string_view wanted) {
   return std::search(text.begin(), text.end(), wanted.begin(), wanted.end(), [](char a, char b) { return lower(a) == lower(b); }) !=
