@@ -12,7 +12,7 @@ namespace prismesh::mesh::document {
 
 namespace {
 
-constexpr std::size_t kMaxTried = 100;  ///< each costs an edit
+constexpr std::size_t kMaxTried = 20;  ///< each costs an edit
 
 contact::ContactThickness wished_thickness(const Generation& generation, const ContactWish& wish) {
   if (wish.thickness) return contact::given_thickness(generation.model, *wish.thickness);
