@@ -206,7 +206,7 @@ Result<bool> WindowedKiosk::take_letter(const display::KeyChanged& event, const 
 
 Result<void> WindowedKiosk::fire_held() {
   const std::optional<HeldLetter> held = std::exchange(held_, std::nullopt);
-  if (!held) return {};
+  if (!held || station_.editor.dialog_open()) return {};  // a question that came meanwhile goes first
   gestures_.forget_click();
   do_command(held->binding->command, held->pointer);
   return {};

@@ -76,8 +76,9 @@ std::string result_words(const std::string& what, const EditReport& report, std:
   if (report.largest_move) words += ", at most " + length(*report.largest_move, unit);
   if (report.elements_added + report.elements_removed > 0)
     words += fmt::format("; {} made, {} removed", counted(report.elements_added, "element"), report.elements_removed);
-  const bool mends = kind != nullptr && kind->group == EditGroup::mending;
-  if (mends || report.before.warn != report.after.warn) words += fmt::format("; warn {} \u2192 {}", report.before.warn, report.after.warn);
+  const bool improves = kind != nullptr && kind->group == EditGroup::mending;
+  if (improves || report.before.warn != report.after.warn)
+    words += fmt::format("; warn {} \u2192 {}", report.before.warn, report.after.warn);
   words += fmt::format("; fail {} \u2192 {}", report.before.fail, report.after.fail);
   if (report.clusters_before != report.clusters_after)
     words += fmt::format("; clusters of triangles {} \u2192 {}", report.clusters_before, report.clusters_after);

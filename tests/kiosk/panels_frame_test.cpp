@@ -81,6 +81,17 @@ TEST(KeptArrangement, is_read_again_and_a_broken_file_costs_only_that) {
     std::ofstream(file) << broken;
     EXPECT_EQ(KeptArrangement(file).now(), Arrangement{}) << broken;
   }
+  // Where nothing can be written, that isn't tried again for each picture: keep() is called at each.
+  std::ofstream(folder / "in the way") << "a file";
+  KeptArrangement barred(folder / "in the way" / "arrangement.toml");
+  barred.set({22, 0.4F});
+  barred.keep();
+  std::filesystem::remove(folder / "in the way");
+  barred.keep();
+  EXPECT_FALSE(std::filesystem::exists(folder / "in the way"));
+  barred.set({23, 0.4F});
+  barred.keep();
+  EXPECT_TRUE(std::filesystem::exists(folder / "in the way" / "arrangement.toml")) << "the next change tries again";
   KeptArrangement nowhere{std::filesystem::path()};
   nowhere.set({20, 0.4F});
   nowhere.keep();

@@ -11,7 +11,7 @@ namespace prismesh::kiosk::display::x11 {
 namespace {
 
 constexpr std::chrono::milliseconds kPatience{200};
-constexpr long kMostBytes = 65536;
+constexpr long kMaxBytes = 65536;
 
 }  // namespace
 
@@ -43,7 +43,7 @@ std::optional<std::string> X11Clipboard::read() {
   unsigned long count = 0, more = 0;
   unsigned char* bytes = nullptr;
   const int got =
-      XGetWindowProperty(display_, window_, property_, 0, kMostBytes / 4, True, AnyPropertyType, &type, &bits, &count, &more, &bytes);
+      XGetWindowProperty(display_, window_, property_, 0, kMaxBytes / 4, True, AnyPropertyType, &type, &bits, &count, &more, &bytes);
   std::optional<std::string> text;
   if (got == Success && type == utf8_ && bits == 8 && more == 0) text.emplace(reinterpret_cast<const char*>(bytes), count);
   if (bytes != nullptr) XFree(bytes);

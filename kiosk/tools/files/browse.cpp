@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostEntries = 20000;
+constexpr std::size_t kMaxEntries = 20000;
 
 std::string size_words(std::uintmax_t bytes) {
   if (bytes < 1000) return fmt::format("{} B", bytes);
@@ -69,7 +69,7 @@ Browsed browse(const std::string& typed, bool all) {
     return found;
   }
   for (const fs::directory_iterator end; !error && entry != end; entry.increment(error)) {
-    if (++read > kMostEntries) {
+    if (++read > kMaxEntries) {
       found.cut = true;
       break;
     }

@@ -18,7 +18,7 @@ namespace prismesh::kiosk::tools::find {
 namespace {
 
 constexpr std::string_view kName = "find";
-constexpr std::size_t kMostCommands = 200, kMostParts = 6;
+constexpr std::size_t kMaxCommands = 200, kMaxParts = 6;
 
 enum class FindCommand : std::uint8_t { find };
 
@@ -73,7 +73,7 @@ void FindTool::find() {
   if (found_ && found_->text == entry_.typed && found_->generation == generation) return;
   found_ = Found{entry_.typed, generation, {}, {}};
   if (context_.shown.snapshot) find_places(entry_.typed);
-  for (const std::size_t i : find_commands(entry_.typed, context_.commands, used_.entries(), kMostCommands)) {
+  for (const std::size_t i : find_commands(entry_.typed, context_.commands, used_.entries(), kMaxCommands)) {
     const input::KeyBinding& binding = context_.commands[i];
     if (binding.command == find_command()) continue;
     const std::string_view menu = input::kMenuNames[static_cast<std::size_t>(binding.menu)];
@@ -105,7 +105,7 @@ void FindTool::find_places(std::string_view text) {
   }
   if (text.find_first_not_of(' ') == std::string_view::npos) return;
   std::size_t count = 0;
-  for (std::size_t i = 0; i < info.parts.size() && count < kMostParts; ++i) {
+  for (std::size_t i = 0; i < info.parts.size() && count < kMaxParts; ++i) {
     if (info.parts[i].shells == 0 || fit_of(text, info.parts[i].name) == 0) continue;
     add_place({Kind::part, info.parts[i].id, i}, part_words(info.parts[i]));
     ++count;
