@@ -179,6 +179,8 @@ void add_reading_commands(Parser& parser) {
       add_command<PenetrationsOptions>(parser, "penetrations", "find where shells cross or are too close", penetrations);
   names_file(penetrations_app->add_option("DECK", penetrations_options->deck, "the deck's main file"))->required();
   add_optional(penetrations_app, "--select", penetrations_options->select, "only where one of these shells takes part, e.g. part:3");
+  penetrations_app->add_flag("--clear", penetrations_options->tries_clear,
+                             "try what separate would remove, also in a deck of more than 100,000 shells");
   penetrations_app->add_option("--gap", penetrations_options->gap, "how far faces must be apart, in the deck's length unit (default: 0)")
       ->check(CLI::Validator([](const std::string& text) { return wrong_gap(text); }, "LENGTH"));
   penetrations_app

@@ -75,6 +75,7 @@ struct PenetrationsOptions {
   double gap = 0;                     ///< deck's length unit
   std::optional<double> thickness;    ///< for all shells; nothing: as below
   bool by_contacts = true;            ///< what the deck's contacts say, else that of elements and sections
+  bool tries_clear = false;           ///< what separate would remove is tried, however large the deck is
 };
 int penetrations(const PenetrationsOptions& options, const Common& common, const Context& context);
 

@@ -15,6 +15,9 @@ namespace {
 using mesh::document::ContactRegion;
 using mesh::document::Contacts;
 
+/// In larger decks trying a single region can take a minute, many times what finding all of them does.
+constexpr std::size_t kMaxShellsTried = 100'000;
+
 void print_region(std::ostream& out, const ContactRegion& region, std::string_view unit) {
   const auto with_name = [](const std::string& part, const std::string& name) {
     return (part.empty() ? "no part" : part) + (name.empty() ? "" : " " + printable(name));
@@ -47,7 +50,12 @@ int penetrations(const PenetrationsOptions& options, const Common& common, const
   const mesh::document::ContactWish wish{options.select, options.gap, options.thickness, options.by_contacts};
   Result<Contacts> found = mesh::document::find_contacts(document->current(), search, wish);
   if (!found) return refuse(found.error());
-  if (const Result<void> tried = mesh::document::find_clear(*document, wish, *found); !tried) return refuse(tried.error());
+  if (options.tries_clear || document->current().model.shell_nodes.size() <= kMaxShellsTried) {
+    if (const Result<void> tried = mesh::document::find_clear(*document, wish, *found); !tried) return refuse(tried.error());
+  } else {
+    for (ContactRegion& region : found->regions)
+      region.why = "it wasn't tried: that can take minutes in a deck of more than 100,000 shells; --clear tries it";
+  }
   const Contacts& contacts = *found;
   say_warnings(context, *document);
   if (common.json) {
