@@ -154,6 +154,23 @@ TEST_F(Cli, penetrations_lists_what_crosses) {
   EXPECT_EQ(region["worst"], (json{"shell:1", "shell:2"}));
 }
 
+TEST_F(Cli, penetrations_tries_what_is_clear_in_a_large_deck_only_when_asked) {
+  const std::string deck = path("large.k"), moved = path("moved.k");
+  ASSERT_EQ(prismesh({"sample", "--elements", "110000", "-o", deck}).status, kDone);
+  const Outcome edited = prismesh({"edit", deck, "--edit", R"({"edit":"select","expr":"part:5","kind":"part"})", "--edit",
+                                   R"({"edit":"translate","by":[0,30,0]})", "-o", moved});
+  ASSERT_EQ(edited.status, kDone) << edited.err;
+  const json untried = prismesh({"penetrations", moved, "--json"}).json()["regions"];
+  const json tried = prismesh({"penetrations", moved, "--json", "--clear"}).json()["regions"];
+  ASSERT_EQ(untried.size(), 2U) << "the reinforcement's two ends pass through the pillar";
+  ASSERT_EQ(tried.size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(untried[i]["clear"], false);
+    EXPECT_THAT(untried[i]["why"].get<std::string>(), ::testing::HasSubstr("--clear"));
+    EXPECT_EQ(tried[i]["clear"], true) << tried[i]["why"];
+  }
+}
+
 TEST_F(Cli, penetrations_says_half_through) {
   const std::string deck = write("half.k", crossing_text(12));
   EXPECT_EQ(prismesh({"penetrations", deck, "--json"}).json()["regions"][0]["depth"], nullptr);
