@@ -25,12 +25,12 @@ BIN = pathlib.Path(os.environ.get("PRISMESH_PROGRAMS", ROOT / "build" / "bin"))
 WIDTH, HEIGHT = 1400, 860
 SILL_FACE = [1180.0, -84.0, 0.0]
 ZOOM_STEPS = 7  # of the wheel
-MIDDLE = 700, 400  # where the handle is put
+MIDDLE = 612, 400  # where the handle is put: about the middle of the view
 PULL_PIXELS = 56
 STEPS = 15
 STEP_MS, REST_MS = 110, 800
-CROP = (320, 20, 1072, 600)  # the animation's part of the screen: left, top, width, height
-PANEL_CROP = (0, 0, 1000, 860)  # the quality panel's, with the error beside it
+CROP = (212, 104, 800, 520)  # the animation's part of the view: left, top, width, height
+PANEL_CROP = (400, 0, 1000, 860)  # the dock with the quality panel, and the error beside it
 TIMEOUT_S = 60
 
 
