@@ -12,17 +12,6 @@ namespace {
 
 class HistoryTest : public StationTestCase {
  protected:
-  std::string state_of(const std::string& name) {
-    const auto item = station_->item(name);
-    return item ? item->state : "";
-  }
-  bool says(const std::string& name, const std::string& words) {
-    const std::string beginning = "item \"" + name + "\" ";
-    return state_of(name).find(words) != std::string::npos ||
-           !station_->kiosk()
-                .wait_until([&](const std::string& line) { return line.starts_with(beginning) && line.find(words) != std::string::npos; })
-                .empty();
-  }
   /// Hides the part, shows it again and locks it: three states that a key each makes, without the pointer on the model.
   void make_three_states() {
     station_->start_kiosk();

@@ -18,17 +18,6 @@ class PartsTest : public StationTestCase {
     station_->start_kiosk();
     ASSERT_TRUE(says("part 2", "shown"));
   }
-  bool says(const std::string& name, const std::string& words) {
-    const auto now = [&] {
-      const auto item = station_->item(name);
-      return item && item->state.find(words) != std::string::npos;
-    };
-    const std::string beginning = "item \"" + name + "\" ";
-    return now() ||
-           !station_->kiosk()
-                .wait_until([&](const std::string& line) { return line.starts_with(beginning) && line.find(words) != std::string::npos; })
-                .empty();
-  }
   std::string pointed_part(const Point& at) {
     const auto [x, y] = station_->settled_aim().pixel_of(at);
     station_->move(x, y);
