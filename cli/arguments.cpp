@@ -283,6 +283,7 @@ void add_session(Parser& parser) {
   };
   CLI::App* open_app = add("open", Action::open, "open a deck");
   names_file(open_app->add_option("DECK", options->deck, "the deck's main file"))->required();
+  open_app->add_flag("--sandboxed", options->sandboxed, "nobody vouches for the deck: modeld has it read and rewritten in a sandbox");
   add_unsaved(open_app);
   CLI::App* edit_app = add("edit", Action::edit, "edit the open document");
   edit_app->add_option("EDIT", options->edits, "an edit as JSON; may be repeated");

@@ -1,6 +1,7 @@
 #include "cli/machine_checks.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <ctime>
 #include <fstream>
@@ -205,19 +206,22 @@ std::vector<Finding> check_clock(const Machine& machine) {
 }
 
 std::vector<Finding> check_units(const Machine& machine) {
+  constexpr std::array kUnits{"prismesh.target",          "prismesh-modeld.socket", "prismesh-modeld.service", "prismesh-deviced.socket",
+                              "prismesh-deviced.service", "prismesh-pen.socket",    "prismesh-pen.service",    "prismesh-import.socket",
+                              "prismesh-import@.service", "prismesh-kiosk.service"};
   std::vector<std::string> missing;
-  for (const char* unit : {"prismesh.target", "prismesh-modeld.socket", "prismesh-modeld.service", "prismesh-deviced.socket",
-                           "prismesh-deviced.service", "prismesh-pen.socket", "prismesh-pen.service", "prismesh-kiosk.service"}) {
+  for (const char* unit : kUnits) {
     std::error_code problem;
     if (!fs::exists(below(machine, "/usr/lib/systemd/system") / unit, problem) &&
         !fs::exists(below(machine, "/etc/systemd/system") / unit, problem))
       missing.emplace_back(unit);
   }
   if (missing.empty()) return {{"units", Grade::good, "installed", {}}};
-  const std::string says = missing.size() == 8 ? "none is installed: the programs are started by hand"
-                                               : missing.front() + " is missing" +
-                                                     (missing.size() > 1 ? ", and " + counted(missing.size() - 1, "other") : std::string());
-  return {{"units", missing.size() == 8 ? Grade::note : Grade::bad, says, "docs/appliance.md"}};
+  const std::string says =
+      missing.size() == kUnits.size()
+          ? "none is installed: the programs are started by hand"
+          : missing.front() + " is missing" + (missing.size() > 1 ? ", and " + counted(missing.size() - 1, "other") : std::string());
+  return {{"units", missing.size() == kUnits.size() ? Grade::note : Grade::bad, says, "docs/appliance.md"}};
 }
 
 }  // namespace prismesh::cli

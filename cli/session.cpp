@@ -167,6 +167,7 @@ ipc::Open open_request(const SessionOptions& options, const Common& common) {
   open.path = whole_path(options.deck);
   open.discard = options.discard;
   open.keep = options.keep;
+  open.sandboxed = options.sandboxed;
   if (common.length_unit) open.length_unit = std::string(name(*common.length_unit));
   open.rules = common.rules;
   for (document::JudgingRule& rule : open.rules)

@@ -1,4 +1,4 @@
-// Answers the one request of a connection: reads a deck, locked in, and hands it over.
+// Answers the one request of a connection, locked in: reads a deck and hands it over, or the new text that edits of it need.
 #pragma once
 
 #include "base/error.h"

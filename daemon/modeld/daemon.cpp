@@ -73,7 +73,7 @@ struct Daemon::Impl final : daemon::Service<ModelProtocol>, ClientChannel {
       : lock(std::move(state_lock)),
         page(std::move(state_page)),
         publisher(StateFolder(options.state_directory).first_number()),
-        handler(StateFolder(options.state_directory), publisher, options.history_bytes, clock),
+        handler(StateFolder(options.state_directory), publisher, options.history_bytes, clock, DeckSource(options.importer)),
         scheduler(*this, worker, handler, publisher) {}
 
   ipc::Descriptor lock;

@@ -37,6 +37,7 @@ Result<OpenOptions> options_of(const ipc::Open& request) {
   if (request.target_size) options.target_size = *request.target_size;
   options.rules = request.rules;
   if (request.criteria) options.criteria = *request.criteria;
+  options.read_settings_file = !request.sandboxed;
   return options;
 }
 
@@ -64,8 +65,8 @@ Result<DocumentKeeper::OpenDocument> DocumentKeeper::load(const ipc::Open& reque
   if (!whole) return fail(whole.error());
   const fs::path& path = *whole;
   std::vector<Warning> warnings;
-  if (Result<void> settled = settle_saves(path, warnings); !settled) return fail(std::move(settled.error()));
-  Result<OpenedDeck> opened = mesh::deck::open(path, progress);
+  if (Result<void> settled = settle_saves(path, request.sandboxed, warnings); !settled) return fail(std::move(settled.error()));
+  Result<OpenedDeck> opened = decks_.open(path, request.sandboxed, progress);
   if (!opened) return fail(std::move(opened.error()));
   const Hash128 content = opened->deck->content;
   const fs::path journal_path = folder_.journal(path, content);
@@ -73,6 +74,7 @@ Result<DocumentKeeper::OpenDocument> DocumentKeeper::load(const ipc::Open& reque
   if (is_there(journal_path)) options->unread_criteria = &unread;  // the journal has their content
   Result<Document> document = mesh::document::open(path, std::move(*opened), *options);
   if (!document) return fail(std::move(document.error()));
+  document->make_text = decks_.text_maker(request.sandboxed);
   for (Error& error : unread)
     warnings.push_back({std::move(error.file), error.line, "criteria-not-read",
                         std::move(error.message) + ". The criteria are those that the unsaved edits were made with", 1});

@@ -8,6 +8,7 @@
 #include "base/clock.h"
 #include "base/progress.h"
 #include "daemon/common/watchdog.h"
+#include "daemon/modeld/deck_source.h"
 #include "daemon/modeld/state_folder.h"
 #include "ipc/model/messages.h"
 #include "mesh/deck/open.h"
@@ -24,8 +25,9 @@ namespace prismesh::modeld {
 class DocumentKeeper {
  public:
   /// `history_bytes`: max. memory of the states kept for undo and redo.
-  explicit DocumentKeeper(StateFolder folder, std::size_t history_bytes = mesh::document::OpenOptions{}.history_bytes)
-      : folder_(std::move(folder)), history_bytes_(history_bytes) {}
+  explicit DocumentKeeper(StateFolder folder, std::size_t history_bytes = mesh::document::OpenOptions{}.history_bytes,
+                          DeckSource decks = {})
+      : folder_(std::move(folder)), history_bytes_(history_bytes), decks_(std::move(decks)) {}
 
   /// Opens a deck and recovers the edits in its journal. Closes the document that is open, if its edits are saved; on an error that one
   /// stays open. Returns false if this deck is already open. Errors: of the deck, of the journal, unsaved edits.
@@ -107,7 +109,7 @@ class DocumentKeeper {
   };
 
   Result<OpenDocument> load(const ipc::Open& request, const Progress& progress);
-  Result<void> settle_saves(const std::filesystem::path& path, std::vector<mesh::deck::Warning>& warnings);
+  Result<void> settle_saves(const std::filesystem::path& path, bool sandboxed, std::vector<mesh::deck::Warning>& warnings);
   Result<void> retire_obsolete(const std::filesystem::path& journal, const char* ending, std::uint64_t expected,
                                std::vector<mesh::deck::Warning>& warnings) const;
   Result<void> remove_intents(const std::filesystem::path& deck) const;
@@ -130,6 +132,7 @@ class DocumentKeeper {
 
   StateFolder folder_;
   std::size_t history_bytes_;
+  DeckSource decks_;
   std::unique_ptr<daemon::Heartbeat> appending_ = std::make_unique<daemon::Heartbeat>();
   std::optional<OpenDocument> open_;
 };

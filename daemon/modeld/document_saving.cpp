@@ -66,9 +66,10 @@ void rename_files(Document& document, const Document& other) {
 
 /// Settles interrupted saves of this deck before it is read: finishes them, or discards those that hadn't begun, and adds a warning where
 /// the result is unknown.
-Result<void> DocumentKeeper::settle_saves(const fs::path& path, std::vector<Warning>& warnings) {
+/// `sandboxed`: the record of a save that may be beside the deck isn't trusted; those of the state folder are.
+Result<void> DocumentKeeper::settle_saves(const fs::path& path, bool sandboxed, std::vector<Warning>& warnings) {
   const auto warn = [&](const char* kind, std::string message) { warnings.push_back({path.string(), 0, kind, std::move(message), 1}); };
-  Result<mesh::deck::CutOffSave> cut_off = mesh::deck::settle_cut_off_save(path);
+  Result<mesh::deck::CutOffSave> cut_off = sandboxed ? mesh::deck::CutOffSave() : mesh::deck::settle_cut_off_save(path);
   if (!cut_off) return fail(std::move(cut_off.error()));
   // What it leaves unsettled is said when the deck is opened.
   const bool is_settled = !cut_off->outcome || *cut_off->outcome == SaveOutcome::finished;
@@ -131,7 +132,7 @@ Result<ipc::Saved> DocumentKeeper::save_copy(const std::string& path, const Prog
   const Result<fs::path> target = absolute(path);
   if (!target) return fail(target.error());
   std::vector<Warning> of_earlier_saves;
-  if (Result<void> settled = settle_saves(*target, of_earlier_saves); !settled) return fail(std::move(settled.error()));
+  if (Result<void> settled = settle_saves(*target, false, of_earlier_saves); !settled) return fail(std::move(settled.error()));
   const Result<mesh::deck::SaveReport> report = mesh::document::save(open_->document, *target, progress);
   if (!report) return fail(report.error());
   return report_of(*target, *report);
@@ -146,7 +147,7 @@ Result<ipc::Saved> DocumentKeeper::save_as(const std::string& path, const Progre
   // If neither finishing nor taking back works, the next opening of the deck settles it.
   (void)end_unfinished_save();
   std::vector<Warning> of_earlier_saves;
-  if (Result<void> settled = settle_saves(*target, of_earlier_saves); !settled) return fail(std::move(settled.error()));
+  if (Result<void> settled = settle_saves(*target, false, of_earlier_saves); !settled) return fail(std::move(settled.error()));
   const Result<mesh::deck::SaveReport> report = mesh::document::save(open.document, *target, part_of(progress, 0, kShareOfWriting));
   if (!report) return fail(report.error());
   ipc::Saved saved = report_of(*target, *report);
@@ -161,7 +162,7 @@ Result<ipc::Saved> DocumentKeeper::save_as(const std::string& path, const Progre
 /// Makes the deck that was just written to `target` the document's deck. Whenever the daemon dies, one of the two decks has all edits.
 Result<void> DocumentKeeper::become(const fs::path& target, const Progress& progress, ipc::Saved& saved) {
   OpenDocument& open = *open_;
-  Result<OpenedDeck> opened = mesh::deck::open(target, progress);
+  Result<OpenedDeck> opened = decks_.open(target, open.request.sandboxed, progress);
   if (!opened) return fail(std::move(opened.error()));
   Result<Document> next = read_again(target, std::move(*opened));
   if (!next) return fail(std::move(next.error()));
@@ -194,7 +195,7 @@ Result<std::optional<ipc::SaveWould>> DocumentKeeper::would(const std::string& p
   const Result<fs::path> target = absolute(path);
   if (!target) return fail(target.error());
   const Result<std::vector<fs::path>> places =
-      mesh::deck::StagedSave::targets(*document.deck, document.opened->model, document.current().model, *target);
+      mesh::deck::StagedSave::targets(*document.deck, document.opened->model, document.current().model, *target, document.make_text);
   if (!places) return fail(places.error());
   ipc::SaveWould would;
   for (const fs::path& place : *places) {
@@ -259,6 +260,7 @@ Result<Document> DocumentKeeper::read_again(const fs::path& path, OpenedDeck ope
   options.history_bytes = now.history_bytes;
   Result<Document> next = mesh::document::open(path, std::move(opened), options);
   if (!next) return next;
+  next->make_text = now.make_text;
   next->next_number = now.next_number;
   if (grown) {
     auto first = std::make_shared<Generation>(*next->opened);
@@ -320,7 +322,7 @@ Result<void> DocumentKeeper::remove_intents(const fs::path& deck) const {
 /// indices differ and the history begins anew.
 Result<DocumentKeeper::ReadySave> DocumentKeeper::make_ready(mesh::deck::StagedSave staged, const Progress& progress) {
   OpenDocument& open = *open_;
-  Result<OpenedDeck> opened = staged.open(progress);
+  Result<OpenedDeck> opened = decks_.open(staged, open.document.path, open.request.sandboxed, progress);
   if (!opened) return fail(std::move(opened.error()));
   Result<Document> next = read_again(open.document.path, std::move(*opened));
   if (!next) return fail(std::move(next.error()));

@@ -2,6 +2,7 @@
 #include <chrono>
 #include <filesystem>
 #include <optional>
+#include <system_error>
 
 #include "base/log.h"
 #include "daemon/common/program.h"
@@ -31,8 +32,12 @@ int main(int argc, char** argv) {
       settings = prismesh::drivers::settings::StationSettings{};
     }
     prismesh::modeld::DaemonOptions options;
+    std::error_code unknown;
     options.runtime_directory = prismesh::ipc::runtime_directory(given.path("--runtime-dir"));
     options.state_directory = prismesh::ipc::state_directory(given.path("--state-dir"));
+    // The service manager's socket, if it has one; else the program beside this one.
+    options.importer.socket = options.runtime_directory / "import.sock";
+    options.importer.program = std::filesystem::read_symlink("/proc/self/exe", unknown).parent_path() / "prismesh-import";
     options.history_bytes = static_cast<std::size_t>(settings->document.history_mb) << 20;
     options.hang_limit = std::chrono::seconds(settings->document.hang_s);
     prismesh::Result<prismesh::modeld::Daemon> daemon = prismesh::modeld::Daemon::start(options);

@@ -33,8 +33,8 @@ struct Outcome {
 
 class RequestHandler {
  public:
-  RequestHandler(StateFolder folder, ipc::SnapshotPublisher& publisher, std::size_t history_bytes, Clock& clock)
-      : keeper_(std::move(folder), history_bytes), publisher_(publisher), clock_(clock) {}
+  RequestHandler(StateFolder folder, ipc::SnapshotPublisher& publisher, std::size_t history_bytes, Clock& clock, DeckSource decks = {})
+      : keeper_(std::move(folder), history_bytes, std::move(decks)), publisher_(publisher), clock_(clock) {}
 
   Outcome open(const ipc::Open& request, const Progress& progress);
   /// Reopens the deck that was open when the daemon ended. The answer is Failed if that can't be opened.

@@ -13,13 +13,13 @@
 namespace prismesh::ipc {
 
 /// Without the line's end. Errors: text in the request isn't UTF-8.
-Result<std::string> encode_import_request(const Import& request);
+Result<std::string> encode_import_request(const ImportRequest& request);
 /// `descriptors`: how many are sent with the line.
 std::string encode_import_answer(const ImportAnswer& answer, std::size_t descriptors = 0);
 std::string encode_import_event(const ImportEvent& event);
 
 /// Errors name the field and, for an unknown one, the nearest known.
-Result<Import> decode_import_request(std::string_view line);
+Result<ImportRequest> decode_import_request(std::string_view line);
 
 Result<Said<ImportAnswer, ImportEvent>> decode_from_import(std::string_view line);
 

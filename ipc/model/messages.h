@@ -33,6 +33,9 @@ struct Open {
   std::vector<mesh::document::JudgingRule> rules;  ///< what parts are judged by, after the settings beside the deck and the two above
   bool discard = false;  ///< discards unsaved edits of the open document once the other deck is read; false: refused with unsaved edits
   bool keep = false;     ///< instead leaves them in their journal: they come back when that deck is opened again
+  /// Nobody vouches for the deck: it is read, and its text rewritten, by prismesh-import in a sandbox (docs/remote.md). The settings beside
+  /// it aren't read.
+  bool sandboxed = false;
 };
 struct Save {
   std::optional<std::string> path;  ///< absent: the deck's own

@@ -10,7 +10,7 @@ namespace prismesh::json {
 PRISMESH_MESSAGE(ipc::Hello, "hello", f("protocol", m.protocol), f("program", m.program));
 PRISMESH_JSON_OBJECT(mesh::document::JudgingRule, f("on", m.on), f("target_size", m.target_size), f("criteria", m.criteria));
 PRISMESH_MESSAGE(ipc::Open, "open", f("path", m.path), f("length_unit", m.length_unit), f("target_size", m.target_size),
-                 f("criteria", m.criteria), f("rules", m.rules), f("discard", m.discard), f("keep", m.keep));
+                 f("criteria", m.criteria), f("rules", m.rules), f("discard", m.discard), f("keep", m.keep), f("sandboxed", m.sandboxed));
 PRISMESH_MESSAGE(ipc::Save, "save", f("path", m.path), f("becomes", m.becomes), f("asks", m.asks), f("stays_unsaved", m.stays_unsaved));
 PRISMESH_MESSAGE(ipc::Close, "close", f("discard", m.discard), f("keep", m.keep));
 PRISMESH_MESSAGE(ipc::ApplyEdit, "apply_edit", f("edit", m.edit));

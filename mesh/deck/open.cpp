@@ -157,10 +157,10 @@ Result<OpenedDeck> open(const std::filesystem::path& path, const Progress& progr
 }
 
 Result<OpenedDeck> open_within(const FileAccess& files, const ReadingLimits& limits, const std::filesystem::path& path,
-                               const Progress& progress) {
+                               const Progress& progress, const StandIns& stand_ins) {
   if (progress && !progress(0)) return fail(cancelled());
   BoundedFiles reading(files, limits);
-  return read_deck(path, reading, limits, {}, {}, progress);
+  return read_deck(path, reading, limits, stand_ins, {}, progress);
 }
 
 }  // namespace prismesh::mesh::deck

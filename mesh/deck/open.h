@@ -23,9 +23,9 @@ struct OpenedDeck {
 /// is being saved; cancelled.
 Result<OpenedDeck> open(const std::filesystem::path& path, const Progress& progress = {}, const StandIns& stand_ins = {});
 
-/// Opens a deck whose files come from elsewhere, and no more of it than the limits allow. No save is looked for. Errors: as above; the
-/// limit that is exceeded, with its number and the file (ErrorKind::over_limit).
+/// Opens a deck whose files come from elsewhere, and no more of it than the limits allow. No save is looked for. `stand_ins`: by the
+/// canonical names of `files`. Errors: as above; the limit that is exceeded, with its number and the file (ErrorKind::over_limit).
 Result<OpenedDeck> open_within(const FileAccess& files, const ReadingLimits& limits, const std::filesystem::path& path,
-                               const Progress& progress = {});
+                               const Progress& progress = {}, const StandIns& stand_ins = {});
 
 }  // namespace prismesh::mesh::deck

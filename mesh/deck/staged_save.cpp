@@ -241,13 +241,13 @@ SaveReport report_of(const Deck& deck, const TextChanges& text, const std::vecto
 }  // namespace
 
 Result<StagedSave> StagedSave::write(const Deck& deck, const Model& original, const Model& model, const fs::path& target,
-                                     const Progress& progress) {
+                                     const Progress& progress, const TextMaker& make_text) {
   const Result<CutOffSave> cut_off = settle_cut_off_save(target);
   if (!cut_off) return fail(cut_off.error());
   const std::lock_guard lock(deck.on_disk->mutex);
   const bool packs = std::any_of(deck.files.begin(), deck.files.end(), [](const SourceFile& file) { return file.bytes.is_packed(); });
   const double of_cards = packs ? kShareOfCardsWithPacking : kShareOfCards, before_writing = of_cards + (packs ? kShareOfPacking : 0);
-  const Result<TextChanges> text = text_changes(deck, original, model, part_of(progress, 0, of_cards));
+  const Result<TextChanges> text = make_text(deck, original, model, part_of(progress, 0, of_cards));
   if (!text) return fail(text.error());
   StagedSave save;
   save.deck_ = &deck;
@@ -272,9 +272,10 @@ Result<StagedSave> StagedSave::write(const Deck& deck, const Model& original, co
   return save;
 }
 
-Result<std::vector<fs::path>> StagedSave::targets(const Deck& deck, const Model& original, const Model& model, const fs::path& target) {
+Result<std::vector<fs::path>> StagedSave::targets(const Deck& deck, const Model& original, const Model& model, const fs::path& target,
+                                                  const TextMaker& make_text) {
   const std::lock_guard lock(deck.on_disk->mutex);
-  const Result<TextChanges> text = text_changes(deck, original, model);
+  const Result<TextChanges> text = make_text(deck, original, model, {});
   if (!text) return fail(text.error());
   const Result<std::vector<FilePlan>> plans = plan(deck, *text, target);
   if (!plans) return fail(plans.error());
@@ -283,10 +284,16 @@ Result<std::vector<fs::path>> StagedSave::targets(const Deck& deck, const Model&
   return places;
 }
 
+std::vector<std::pair<fs::path, fs::path>> StagedSave::waiting() const {
+  std::vector<std::pair<fs::path, fs::path>> files;
+  for (std::size_t i = staged_.in_place(); i < files_.size(); ++i)
+    files.emplace_back(deck_->files[files_[i].index].path, staged_.files()[i].temporary);
+  return files;
+}
+
 Result<OpenedDeck> StagedSave::open(const Progress& progress) const {
   StandIns stand_ins;
-  for (std::size_t i = staged_.in_place(); i < files_.size(); ++i)
-    stand_ins[canonical_name(deck_->files[files_[i].index].path)] = staged_.files()[i].temporary;
+  for (auto& [file, by] : waiting()) stand_ins[canonical_name(file)] = by;
   return deck::open(deck_->files[0].path, progress, stand_ins);
 }
 

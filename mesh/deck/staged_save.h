@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "base/file.h"
@@ -11,6 +12,7 @@
 #include "base/progress.h"
 #include "mesh/deck/data/deck.h"
 #include "mesh/deck/editing/rounding.h"
+#include "mesh/deck/editing/text_changes.h"
 #include "mesh/deck/open.h"
 #include "mesh/deck/save_record.h"
 #include "mesh/deck/save_report.h"
@@ -28,13 +30,13 @@ class StagedSave {
   };
 
   /// The first step of save (mesh/deck/save.h): everything but replacing files. Before it, a save of the target that was cut off is
-  /// settled. The deck must outlive this. Errors: those of save.
+  /// settled. The deck must outlive this. Errors: those of save and of `make_text`.
   static Result<StagedSave> write(const Deck& deck, const Model& original, const Model& model, const std::filesystem::path& target,
-                                  const Progress& progress = {});
+                                  const Progress& progress = {}, const TextMaker& make_text = text_changes);
 
   /// The paths that such a save would write. Errors: those of save, without those of writing.
   static Result<std::vector<std::filesystem::path>> targets(const Deck& deck, const Model& original, const Model& model,
-                                                            const std::filesystem::path& target);
+                                                            const std::filesystem::path& target, const TextMaker& make_text = text_changes);
 
   const SaveReport& report() const { return report_; }
   void add_note(std::string note) { report_.notes.push_back(std::move(note)); }
@@ -46,6 +48,8 @@ class StagedSave {
   /// Keeps the files that aren't in place yet on disk, with the record of the save, so that it can be finished later.
   void leave();
 
+  /// The files that aren't in place yet, by the paths of those that they will replace.
+  std::vector<std::pair<std::filesystem::path, std::filesystem::path>> waiting() const;
   /// Opens the deck as it will be once the files are in place. Only for a save to the deck's own path. Errors: those of open.
   Result<OpenedDeck> open(const Progress& progress = {}) const;
   /// Replaces the files. While there are several, a record of the save is beside the main file. After an error, another call continues.

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "mesh/deck/data/deck.h"
+#include "mesh/deck/editing/text_changes.h"
 #include "mesh/document/generation.h"
 #include "mesh/document/settings.h"
 
@@ -22,6 +23,7 @@ struct Document {
   std::size_t cursor = 0;                                      ///< the current one
   std::shared_ptr<const Generation> opened;                    ///< as read from the deck; what saving compares with
   std::uint64_t next_number = 1;
+  deck::TextMaker make_text = deck::text_changes;  ///< the new text of the deck's files when it is saved
 
   const Generation& current() const { return *generations[cursor]; }
   bool can_undo() const { return cursor > 0; }

@@ -45,7 +45,7 @@ Result<deck::SaveReport> save(const Document& document, const std::filesystem::p
 
 Result<deck::StagedSave> stage_save(const Document& document, const std::filesystem::path& target, const Progress& progress) {
   Result<deck::StagedSave> staged =
-      deck::StagedSave::write(*document.deck, document.opened->model, document.current().model, target, progress);
+      deck::StagedSave::write(*document.deck, document.opened->model, document.current().model, target, progress, document.make_text);
   if (staged)
     if (std::string note = rounding_note(document, staged->rounding()); !note.empty()) staged->add_note(std::move(note));
   return staged;

@@ -58,7 +58,7 @@ const std::vector<Module>& modules() {
 
       {"daemon/common", {"ipc/wire"}},
       {"daemon/import", {"ipc/import", "daemon/common"}},
-      {"daemon/modeld", {"ipc/model", "ipc/pen", "mesh/field", "daemon/common", "drivers/settings"}},
+      {"daemon/modeld", {"ipc/import", "ipc/model", "ipc/pen", "mesh/field", "daemon/common", "drivers/settings"}},
       {"daemon/deviced/realtime", {"base"}},
       {"daemon/deviced/pen", {"ipc/pen", "daemon/common", "daemon/deviced/realtime", "drivers/haptic_pen/framed", "drivers/settings"}},
       {"daemon/deviced",

@@ -124,8 +124,9 @@ TEST_F(DoctorTest, judges_the_clock) {
 
 TEST_F(DoctorTest, names_a_unit_that_is_missing) {
   EXPECT_THAT(grades(check_units(machine_)), ElementsAre(Grade::note)) << "none: a machine of a developer";
-  for (const char* unit : {"prismesh.target", "prismesh-modeld.socket", "prismesh-modeld.service", "prismesh-deviced.socket",
-                           "prismesh-deviced.service", "prismesh-pen.socket", "prismesh-pen.service"})
+  for (const char* unit :
+       {"prismesh.target", "prismesh-modeld.socket", "prismesh-modeld.service", "prismesh-deviced.socket", "prismesh-deviced.service",
+        "prismesh-pen.socket", "prismesh-pen.service", "prismesh-import.socket", "prismesh-import@.service"})
     put(std::string("usr/lib/systemd/system/") + unit);
   std::vector<Finding> found = check_units(machine_);
   EXPECT_THAT(grades(found), ElementsAre(Grade::bad));

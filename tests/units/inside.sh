@@ -39,6 +39,7 @@ for service in $services; do
   case $service in prismesh-deviced | prismesh-pen) limit=17 ;; esac
   check "exposure of $service at most 1.${limit#1}" systemd-analyze security --offline=yes --threshold=$limit /usr/lib/systemd/system/$service.service
 done
+check "exposure of prismesh-import at most 1.5" systemd-analyze security --offline=yes --threshold=15 /usr/lib/systemd/system/prismesh-import@.service
 
 # --- starting ---
 systemd-tmpfiles --create /usr/lib/tmpfiles.d/prismesh.conf
@@ -60,6 +61,21 @@ check "the pen runs as the device daemon's user, with its guard" bash -c '
 
 # --- the demo's work ---
 session() { timeout 30 prismesh session --runtime-dir $run "$@"; }
+
+# --- a deck that nobody vouches for: a unit reads it, and another one makes its new text ---
+cp -p /var/lib/prismesh/models/sample.k /var/lib/prismesh/models/sent.k
+check "a deck is opened by the import unit" session open --sandboxed /var/lib/prismesh/models/sent.k
+check "is edited" session edit '{"edit":"translate","by":[0,0,6],"on":"5000001-5000040"}'
+check "and saved through another one" session save
+check "three units did that" bash -c 'said=$(systemctl show -P NAccepted prismesh-import.socket); echo "$said"; [ "$said" = 3 ]'
+check "the saved bytes are those of a save without a sandbox" bash -c '
+  prismesh edit /root/sample.k -o /tmp/plain.k --edit "{\"edit\":\"translate\",\"by\":[0,0,6],\"on\":\"5000001-5000040\"}" && cmp /tmp/plain.k /var/lib/prismesh/models/sent.k'
+check "the deck that is not readable for the group is refused in a sentence" bash -c '
+  install -m 600 /root/sample.k /var/lib/prismesh/models/closed.k
+  said=$(timeout 30 prismesh session --runtime-dir /run/prismesh open --sandboxed /var/lib/prismesh/models/closed.k 2>&1); echo "$said"; grep -q "closed.k" <<<"$said"'
+check "only the document daemon may ask for one" bash -c '! setpriv --reuid prismesh-kiosk --regid prismesh --clear-groups python3 -c "
+import socket; socket.socket(socket.AF_UNIX).connect(\"/run/prismesh/import.sock\")"'
+
 check "a deck is opened" session open /var/lib/prismesh/models/sample.k
 check "a patch is selected" session edit '{"edit":"select","expr":"5000001-5000040"}'
 check "and lifted" session edit '{"edit":"lift","distance":6}'

@@ -32,16 +32,16 @@ std::string with_slashes(std::string name) {
 }
 
 /// The file that is read for this one.
-const fs::path& stand_in(const StandIns& stand_ins, const fs::path& file) {
+const fs::path& stand_in(const StandIns& stand_ins, const fs::path& file, const FileAccess& access) {
   if (stand_ins.empty()) return file;
-  const auto at = stand_ins.find(canonical_name(file));
+  const auto at = stand_ins.find(access.canonical_name(file));
   return at == stand_ins.end() ? file : at->second;
 }
 
 }  // namespace
 
 Result<FileSet> FileSet::begin(fs::path main, BoundedFiles& reading, const StandIns& stand_ins, const Progress& progress) {
-  Result<FileBytes> bytes = reading.read(stand_in(stand_ins, main), main, progress);
+  Result<FileBytes> bytes = reading.read(stand_in(stand_ins, main, reading.access()), main, progress);
   if (!bytes) return fail(std::move(bytes.error()));
   return FileSet(std::move(main), std::move(*bytes), reading, stand_ins);
 }
@@ -122,7 +122,7 @@ std::uint32_t FileSet::open(const fs::path& found, const std::string& name, std:
     reason = "is one of too many";
     return kNoFile;
   }
-  Result<FileBytes> bytes = reading_->read(stand_in(stand_ins_, found), found);
+  Result<FileBytes> bytes = reading_->read(stand_in(stand_ins_, found, reading_->access()), found);
   if (!bytes) {
     reason = bytes.error().message;
     return kNoFile;

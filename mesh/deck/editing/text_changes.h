@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 #include "base/error.h"
@@ -25,6 +26,9 @@ struct TextChanges {
 /// `original`: the model as opened; `model`: as edited from it. Costs what differs. Errors: what can't be saved safely, with the reason
 /// and, where there is one, file and line; cancelled.
 Result<TextChanges> text_changes(const Deck& deck, const Model& original, const Model& model, const Progress& progress = {});
+
+/// Makes what text_changes makes, perhaps in another process: a deck that nobody vouches for isn't parsed here.
+using TextMaker = std::function<Result<TextChanges>(const Deck&, const Model& original, const Model& model, const Progress&)>;
 
 /// Whether added, removed and reshaped nodes and shells can be saved, and the new coordinates of the nodes in `moved` (ascending). Other
 /// moved nodes aren't checked: each would cost a card, and the edit that moved them has checked them. Errors: as text_changes.

@@ -17,9 +17,13 @@
 #include <gtest/gtest.h>
 
 #include "ipc/import/client.h"
+#include "ipc/import/text_hand_over.h"
+#include "mesh/deck/editing/text_changes.h"
 #include "mesh/deck/open.h"
 #include "mesh/deck/sample.h"
+#include "mesh/model/topology_change.h"
 #include "tests/support/places.h"
+#include "tests/support/real_deck.h"
 
 namespace prismesh::importer {
 namespace {
@@ -202,6 +206,82 @@ TEST_F(Importing, says_that_memory_has_run_out) {
 }
 #endif
 
+/// The deck of Importing with what an edit made of its model: a node moved, a shell removed, a node and a shell added.
+class Rewriting : public Importing {
+ protected:
+  void SetUp() override {
+    Importing::SetUp();
+    write("parts/inner.k", nodes_from(3, 4) + "*ELEMENT_SHELL\n       2       1       3       4       6       5\n");
+    deck = write("main.k", "*KEYWORD\n*INCLUDE\nparts/inner.k\n" + nodes_from(1, 2) + kShell + "*END\n");
+    auto imported = import(deck);
+    ASSERT_TRUE(imported) << imported.error().text();
+    opened = std::move(imported->opened);
+    model = opened.model;
+    model.positions.set(model.find_node(3).value, {0.25, 1, 0});
+    const mesh::NodeIndex middle = mesh::add_node(model, 20, {0.5, 0, 0}, mesh::edge_origin(model.find_node(1), model.find_node(2)));
+    const mesh::ShellIndex first = model.find_shell(1);
+    mesh::add_shell(model, 21, {{middle, model.find_node(2), model.find_node(4), model.find_node(4)}}, first);
+    mesh::set_shell_nodes(model, first, {{model.find_node(1), middle, model.find_node(4), model.find_node(3)}});
+    mesh::remove_shell(model, model.find_shell(2));
+  }
+  Result<mesh::deck::TextChanges> rewritten() const { return ipc::rewrite_deck(*opened.deck, opened.model, model, options); }
+
+  fs::path deck;
+  mesh::deck::OpenedDeck opened;
+  mesh::Model model;
+};
+
+TEST_F(Rewriting, makes_the_text_that_is_made_without_a_sandbox) {
+  const auto here = mesh::deck::text_changes(*opened.deck, opened.model, model);
+  ASSERT_TRUE(here) << here.error().text();
+  const auto there = rewritten();
+  ASSERT_TRUE(there) << there.error().text();
+  EXPECT_EQ(ipc::write_text_hand_over(*there), ipc::write_text_hand_over(*here));
+  EXPECT_EQ(there->counts.nodes_added, 1u);
+  EXPECT_EQ(there->counts.shells_removed, 1u);
+  EXPECT_EQ(there->by_file.size(), 2u);
+}
+
+TEST_F(Rewriting, refuses_what_cant_be_saved_and_what_changed_on_disk) {
+  mesh::remove_node(model, model.find_node(1));
+  EXPECT_THAT(rewritten().error().text(), HasSubstr("node 1"));
+  write("parts/inner.k", nodes_from(3, 5));
+  EXPECT_THAT(rewritten().error().text(), HasSubstr("has changed on disk since it was opened"));
+  fs::remove_all(folder);
+  EXPECT_THAT(rewritten().error().text(), HasSubstr("folder can't be opened"));
+}
+
+/// Larger ones take the time of the suite, and have no card that the smaller ones lack.
+constexpr std::uintmax_t kSmallDeckBytes = 8 << 20;
+
+TEST_F(Importing, rewrites_real_decks_as_without_a_sandbox) {
+  const auto decks = test::real_decks();
+  if (!decks) GTEST_SKIP() << "PRISMESH_MODELS names no folder with counts.json: REAL DECKS ARE NOT TESTED";
+  std::ifstream in(*decks / "counts.json");
+  const nlohmann::json counts = nlohmann::json::parse(in);
+  std::size_t same = 0;
+  for (const auto& [name, expected] : counts.items()) {
+    const fs::path deck = *decks / expected["main"].get<std::string>();
+    if (fs::file_size(deck) > kSmallDeckBytes) continue;
+    const auto imported = import(deck);
+    if (!imported) continue;
+    const mesh::deck::OpenedDeck& opened = imported->opened;
+    mesh::Model model = opened.model;
+    for (std::size_t n = 0; n < model.node_count(); n += 5)
+      if (model.node_holds[n] == 0) model.positions.set(n, model.positions[n] + mesh::Vec3(0.125, 0, 0.0625));
+    if (model.shell_count() > 0) mesh::remove_shell(model, mesh::ShellIndex(model.shell_count() / 2));
+    const auto here = mesh::deck::text_changes(*opened.deck, opened.model, model);
+    const auto there = ipc::rewrite_deck(*opened.deck, opened.model, model, options);
+    ASSERT_EQ(here.has_value(), there.has_value()) << name;
+    if (here)
+      EXPECT_EQ(ipc::write_text_hand_over(*there), ipc::write_text_hand_over(*here)) << name;
+    else
+      EXPECT_EQ(there.error().text(), here.error().text()) << name;
+    same += here.has_value() ? 1 : 0;
+  }
+  EXPECT_GT(same, 10u);
+}
+
 /// A script in place of prismesh-import.
 class ImportScript : public Importing {
  protected:
@@ -240,7 +320,7 @@ TEST_F(ImportScript, that_talks_nonsense_is_told_in_a_sentence) {
   become("read request; echo nonsense >&0");
   EXPECT_THAT(refusal(deck), HasSubstr("it isn't JSON"));
   become("read request; echo '{\"answer\": \"imported\", \"to\": 1}' >&0");
-  EXPECT_THAT(refusal(deck), HasSubstr("without the deck"));
+  EXPECT_THAT(refusal(deck), HasSubstr("without what was asked for"));
   become("read request; echo '{\"answer\": \"imported\", \"to\": 1, \"descriptors\": 1}' >&0");
   EXPECT_THAT(refusal(deck), HasSubstr("more descriptors than came"));
   become("read request; echo '{\"answer\": \"failed\", \"to\": 1, \"message\": \"no\"}' >&0");
@@ -276,6 +356,15 @@ TEST_F(ImportScript, that_hands_over_bad_memory_is_told_in_a_sentence) {
   EXPECT_THAT(refusal(deck), HasSubstr("it is empty"));
   become(hostile("memory = os.open(\"/dev/null\", os.O_RDONLY)"));
   EXPECT_THAT(refusal(deck), HasSubstr("isn't sealed"));
+}
+
+TEST_F(ImportScript, that_answers_another_question_is_told_in_a_sentence) {
+  const auto imported = import(write("whole.k", "*KEYWORD\n" + nodes_from(1, 4) + kShell + "*END\n"));
+  ASSERT_TRUE(imported) << imported.error().text();
+  const mesh::deck::OpenedDeck& opened = imported->opened;
+  const std::string seal = "\nfcntl.fcntl(memory, fcntl.F_ADD_SEALS, 15)";
+  become(hostile("os.write(memory, b\"nonsense\" * 100)" + seal));
+  EXPECT_THAT(ipc::rewrite_deck(*opened.deck, opened.model, opened.model, options).error().text(), HasSubstr("without what was asked for"));
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 
 #include "ipc/import/check_hand_over.h"
 #include "mesh/deck/open.h"
+#include "tests/ipc/import/small_deck.h"
 
 namespace prismesh::ipc {
 namespace {
@@ -22,27 +23,6 @@ using mesh::NodeIndex;
 using mesh::deck::OpenedDeck;
 using ::testing::HasSubstr;
 
-constexpr const char* kDeck =
-    "*KEYWORD\n*NODE\n"
-    "       1             0.0             0.0             0.0\n"
-    "       2             1.0             0.0             0.0\n"
-    "       3             1.0             1.0             0.0\n"
-    "       4             0.0             1.0             0.0\n"
-    "*ELEMENT_SHELL\n       1       7       1       2       3       4\n       2       7       1       2       3       9\n"
-    "*ELEMENT_BEAM\n       5       8       1       2\n"
-    "*SET_NODE_LIST\n         5\n         1         2\n"
-    "*CONTACT_AUTOMATIC_SINGLE_SURFACE\n         0\n\n\n"
-    "*PART\nplate\n         7         3         2\n*SECTION_SHELL\n         3         2\n       1.2       1.2       1.2       1.2\n*END\n";
-
-OpenedDeck open_deck() {
-  const fs::path folder = fs::temp_directory_path() / ("prismesh-hand-over-" + std::to_string(std::random_device{}()));
-  fs::create_directories(folder);
-  std::ofstream(folder / "main.k") << kDeck;
-  auto opened = mesh::deck::open(folder / "main.k");
-  fs::remove_all(folder);
-  return std::move(opened.value());
-}
-
 std::vector<std::byte> handed_over(const OpenedDeck& opened) {
   std::vector<std::byte> bytes(hand_over_size(opened));
   write_hand_over(opened, bytes);
@@ -50,11 +30,11 @@ std::vector<std::byte> handed_over(const OpenedDeck& opened) {
 }
 
 TEST(HandOver, keeps_deck_and_model) {
-  const OpenedDeck opened = open_deck();
+  const OpenedDeck opened = open_small_deck();
   const auto taken = read_hand_over(handed_over(opened), "/somewhere");
   ASSERT_TRUE(taken) << taken.error().text();
   EXPECT_EQ(taken->deck->files.at(0).path, "/somewhere/main.k");
-  EXPECT_EQ(taken->deck->files[0].bytes.text(), kDeck);
+  EXPECT_EQ(taken->deck->files[0].bytes.text(), kSmallDeck);
   EXPECT_EQ(taken->deck->content, opened.deck->content);
   EXPECT_EQ(taken->model.find_node(3), opened.model.find_node(3));
   EXPECT_EQ(taken->model.position(NodeIndex(2)), opened.model.position(NodeIndex(2)));
@@ -73,7 +53,7 @@ TEST(HandOver, keeps_deck_and_model) {
 }
 
 TEST(HandOver, that_ends_early_or_late_is_refused) {
-  const std::vector<std::byte> bytes = handed_over(open_deck());
+  const std::vector<std::byte> bytes = handed_over(open_small_deck());
   for (std::size_t size = 0; size < bytes.size(); ++size)
     EXPECT_FALSE(read_hand_over({bytes.data(), size}, "/somewhere")) << size << " of " << bytes.size();
   std::vector<std::byte> longer = bytes;
@@ -83,7 +63,7 @@ TEST(HandOver, that_ends_early_or_late_is_refused) {
 
 /// Every byte, changed to what hurts most: the deck is refused or sound.
 TEST(HandOver, with_any_byte_changed_is_refused_or_sound) {
-  const std::vector<std::byte> bytes = handed_over(open_deck());
+  const std::vector<std::byte> bytes = handed_over(open_small_deck());
   std::size_t refused = 0;
   for (std::size_t at = 0; at < bytes.size(); ++at)
     for (const unsigned flip : {0x01u, 0x80u, 0xffu}) {
@@ -102,7 +82,7 @@ mesh::deck::SourceFile file_named(const char* name) { return {name, name, FileBy
 
 /// The fault that is found once `spoil` has changed the deck.
 std::string fault_after(const std::function<void(mesh::deck::Deck&, mesh::Model&)>& spoil) {
-  OpenedDeck opened = open_deck();
+  OpenedDeck opened = open_small_deck();
   spoil(const_cast<mesh::deck::Deck&>(*opened.deck), opened.model);
   const auto taken = read_hand_over(handed_over(opened), "/somewhere");
   return taken ? "none" : taken.error().text();

@@ -1,0 +1,167 @@
+#include "ipc/import/model_change.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <string>
+#include <utility>
+
+#include "ipc/import/hand_over_bytes.h"
+#include "mesh/model/topology_change.h"
+
+namespace prismesh::ipc {
+
+namespace {
+
+using mesh::Model;
+using mesh::NodeIndex;
+using mesh::NodeOrigin;
+using mesh::ShellIndex;
+using mesh::ShellNodes;
+using mesh::Vec3;
+
+constexpr std::uint64_t kChangeMagic = 0x3147'4843'4d53'5250;  // "PRSMCHG1"
+
+/// Lists of one length belong together.
+struct ModelChange {
+  std::vector<NodeIndex> moved;  ///< of the deck
+  std::vector<Vec3> moved_to;
+  std::vector<std::int64_t> node_ids;  ///< of added nodes, those that were removed again too
+  std::vector<Vec3> node_positions;
+  std::vector<NodeOrigin> node_origins;
+  std::vector<std::int64_t> shell_ids;  ///< of added shells
+  std::vector<ShellNodes> shell_nodes;
+  std::vector<ShellIndex> shell_parents;
+  std::vector<ShellIndex> reshaped;  ///< of the deck
+  std::vector<ShellNodes> reshaped_to;
+  std::vector<ShellIndex> removed_shells;  ///< in the order of their removal, as the nodes
+  std::vector<NodeIndex> removed_nodes;
+};
+
+template <class Archive>
+void describe_change(Archive& io, auto& change) {
+  io.array(change.moved);
+  io.array(change.moved_to);
+  io.array(change.node_ids);
+  io.array(change.node_positions);
+  io.array(change.node_origins);
+  io.array(change.shell_ids);
+  io.array(change.shell_nodes);
+  io.array(change.shell_parents);
+  io.array(change.reshaped);
+  io.array(change.reshaped_to);
+  io.array(change.removed_shells);
+  io.array(change.removed_nodes);
+}
+
+ModelChange change_between(const Model& original, const Model& model) {
+  ModelChange change;
+  change.moved = mesh::moved_nodes(original, model);
+  for (const NodeIndex node : change.moved) change.moved_to.push_back(model.position(node));
+  if (!model.topology_change) return change;
+  const mesh::TopologyChange& grown = *model.topology_change;
+  for (std::size_t n = original.node_count(); n < model.node_count(); ++n) {
+    change.node_ids.push_back(model.node_ids[n]);
+    change.node_positions.push_back(model.positions[n]);
+    change.node_origins.push_back(mesh::origin_of(model, NodeIndex(n)));
+  }
+  for (std::size_t s = original.shell_count(); s < model.shell_count(); ++s) {
+    change.shell_ids.push_back(model.shell_ids[s]);
+    change.shell_nodes.push_back(model.shell_nodes[s]);
+    change.shell_parents.push_back(grown.shell_parents[s - grown.deck_shells]);
+  }
+  change.reshaped = mesh::changes_between(original, model).reshaped_shells;
+  for (const ShellIndex shell : change.reshaped) change.reshaped_to.push_back(model.shell(shell));
+  change.removed_shells = grown.removed_shells;
+  change.removed_nodes = grown.removed_nodes;
+  return change;
+}
+
+template <class Index>
+bool all_below(const std::vector<Index>& indices, std::size_t end) {
+  return std::all_of(indices.begin(), indices.end(), [&](Index index) { return index.value < end; });
+}
+
+bool all_below(const ShellNodes& shell, std::size_t end) {
+  return std::all_of(shell.node.begin(), shell.node.end(), [&](NodeIndex node) { return node.value < end; });
+}
+
+template <class Index>
+bool all_differ(std::vector<Index> indices) {
+  std::sort(indices.begin(), indices.end());
+  return std::adjacent_find(indices.begin(), indices.end()) == indices.end();
+}
+
+/// A shell that was removed again has no nodes.
+bool is_shell(const ShellNodes& shell, std::size_t nodes) { return !shell.node[0].valid() || all_below(shell, nodes); }
+
+bool comes_from(const NodeOrigin& origin, std::size_t nodes) {
+  const int parents = origin.count();
+  return parents > 0 && std::all_of(origin.parent.begin(), origin.parent.begin() + parents, [&](NodeIndex p) { return p.value < nodes; });
+}
+
+/// What doesn't fit the model; empty: all fits.
+std::string fault_of(const ModelChange& change, const Model& original) {
+  const std::size_t nodes = original.node_count() + change.node_ids.size(), shells = original.shell_count() + change.shell_ids.size();
+  if (change.moved.size() != change.moved_to.size() || !all_below(change.moved, original.node_count()))
+    return "a moved node isn't in the deck";
+  if (change.node_ids.size() != change.node_positions.size() || change.node_ids.size() != change.node_origins.size())
+    return "added nodes lack ids, places or origins";
+  for (std::size_t n = 0; n < change.node_origins.size(); ++n)
+    if (!comes_from(change.node_origins[n], original.node_count() + n)) return "an added node comes from none before it";
+  if (change.shell_ids.size() != change.shell_nodes.size() || change.shell_ids.size() != change.shell_parents.size())
+    return "added shells lack ids, nodes or parents";
+  for (std::size_t s = 0; s < change.shell_nodes.size(); ++s)
+    if (!is_shell(change.shell_nodes[s], nodes) || change.shell_parents[s].value >= original.shell_count() + s)
+      return "an added shell has nodes or a parent that don't exist";
+  if (change.reshaped.size() != change.reshaped_to.size() || !all_below(change.reshaped, original.shell_count()))
+    return "a shell with other corners isn't in the deck";
+  for (const ShellNodes& corners : change.reshaped_to)
+    if (!all_below(corners, nodes)) return "a corner of a shell doesn't exist";
+  if (!all_below(change.removed_shells, shells) || !all_differ(change.removed_shells) || !all_below(change.removed_nodes, nodes) ||
+      !all_differ(change.removed_nodes))
+    return "something is removed that doesn't exist, or twice";
+  return "";
+}
+
+void apply(const ModelChange& change, Model& model) {
+  for (std::size_t m = 0; m < change.moved.size(); ++m) model.positions.set(change.moved[m].value, change.moved_to[m]);
+  for (std::size_t n = 0; n < change.node_ids.size(); ++n)
+    mesh::add_node(model, change.node_ids[n], change.node_positions[n], change.node_origins[n]);
+  for (std::size_t s = 0; s < change.shell_ids.size(); ++s)
+    mesh::add_shell(model, change.shell_ids[s], change.shell_nodes[s], change.shell_parents[s]);
+  for (std::size_t r = 0; r < change.reshaped.size(); ++r) mesh::set_shell_nodes(model, change.reshaped[r], change.reshaped_to[r]);
+  for (const ShellIndex shell : change.removed_shells) mesh::remove_shell(model, shell);
+  for (const NodeIndex node : change.removed_nodes) mesh::remove_node(model, node);
+}
+
+}  // namespace
+
+std::vector<std::byte> write_model_change(const Model& original, const Model& model) {
+  const ModelChange change = change_between(original, model);
+  HandOverWriter counter;
+  counter.number(kChangeMagic);
+  describe_change(counter, change);
+  std::vector<std::byte> bytes(counter.size());
+  HandOverWriter writer(bytes);
+  writer.number(kChangeMagic);
+  describe_change(writer, change);
+  return bytes;
+}
+
+Result<Model> read_model_change(std::span<const std::byte> bytes, const Model& original) {
+  const auto refused = [](const std::string& fault) { return fail("what was edited", fault + "; nothing is written"); };
+  HandOverReader from(bytes);
+  std::uint64_t magic = 0;
+  from.number(magic);
+  if (magic != kChangeMagic) return refused("it doesn't begin as one, or is of another version");
+  ModelChange change;
+  describe_change(from, change);
+  if (!from.ok()) return refused(from.fault());
+  if (!from.at_end()) return refused("something follows its end");
+  if (const std::string fault = fault_of(change, original); !fault.empty()) return refused(fault);
+  Model model = original;
+  apply(change, model);
+  return model;
+}
+
+}  // namespace prismesh::ipc
