@@ -55,9 +55,11 @@ const std::vector<Module>& modules() {
       {"ipc/pen", {"ipc/wire", "drivers/haptics"}},
       {"ipc/import", {"ipc/wire", "mesh/deck"}},
       {"ipc/model", {"ipc/wire", "mesh/document"}},
+      {"ipc/store", {"ipc/wire"}},
 
       {"daemon/common", {"ipc/wire"}},
       {"daemon/import", {"ipc/import", "daemon/common"}},
+      {"daemon/intake/store", {"ipc/store"}},
       {"daemon/modeld", {"ipc/import", "ipc/model", "ipc/pen", "mesh/field", "daemon/common", "drivers/settings"}},
       {"daemon/deviced/realtime", {"base"}},
       {"daemon/deviced/pen", {"ipc/pen", "daemon/common", "daemon/deviced/realtime", "drivers/haptic_pen/framed", "drivers/settings"}},

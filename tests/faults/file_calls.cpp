@@ -208,10 +208,23 @@ int renamed(int from_at, const char* from, int to_at, const char* to, unsigned f
                   {Kind::rename, inode_of(source), 0, source, target, ""});
 }
 
-int removed(const char* path, int flags) {
-  const std::string whole = below(AT_FDCWD, path);
-  return recorded(!whole.empty() && inode_of(whole) != 0, [&] { return static_cast<int>(::syscall(SYS_unlinkat, AT_FDCWD, path, flags)); },
+int removed(int at, const char* path, int flags) {
+  const std::string whole = below(at, path);
+  return recorded(!whole.empty() && inode_of(whole) != 0, [&] { return static_cast<int>(::syscall(SYS_unlinkat, at, path, flags)); },
                   {Kind::remove, 0, 0, whole, "", ""});
+}
+
+int linked(int from_at, const char* from, int to_at, const char* to, int flags) {
+  const std::string source = below(from_at, from), target = below(to_at, to);
+  return recorded(!source.empty() && !target.empty(),
+                  [&] { return static_cast<int>(::syscall(SYS_linkat, from_at, from, to_at, to, flags)); },
+                  {Kind::link, inode_of(source), 0, source, target, ""});
+}
+
+int folder_made(int at, const char* path, mode_t mode) {
+  const std::string whole = below(at, path);
+  return recorded(!whole.empty() && inode_of(whole) == 0, [&] { return static_cast<int>(::syscall(SYS_mkdirat, at, path, mode)); },
+                  {Kind::make_folder, 0, 0, whole, "", ""});
 }
 
 }  // namespace
@@ -336,25 +349,20 @@ int syncfs(int fd) noexcept {
 }
 
 int rename(const char* from, const char* to) noexcept { return renamed(AT_FDCWD, from, AT_FDCWD, to, 0); }
+int renameat(int from_at, const char* from, int to_at, const char* to) noexcept { return renamed(from_at, from, to_at, to, 0); }
 int renameat2(int from_at, const char* from, int to_at, const char* to, unsigned flags) noexcept {
   return renamed(from_at, from, to_at, to, flags);
 }
-int link(const char* from, const char* to) noexcept {
-  const std::string source = below(AT_FDCWD, from), target = below(AT_FDCWD, to);
-  return recorded(!source.empty() && !target.empty(),
-                  [&] { return static_cast<int>(::syscall(SYS_linkat, AT_FDCWD, from, AT_FDCWD, to, 0)); },
-                  {FileCall::Kind::link, inode_of(source), 0, source, target, ""});
-}
-int unlink(const char* path) noexcept { return removed(path, 0); }
+int link(const char* from, const char* to) noexcept { return linked(AT_FDCWD, from, AT_FDCWD, to, 0); }
+int linkat(int from_at, const char* from, int to_at, const char* to, int flags) noexcept { return linked(from_at, from, to_at, to, flags); }
+int unlink(const char* path) noexcept { return removed(AT_FDCWD, path, 0); }
+int unlinkat(int at, const char* path, int flags) noexcept { return removed(at, path, flags); }
 int remove(const char* path) noexcept {
-  const int result = removed(path, 0);
-  return result < 0 && errno == EISDIR ? removed(path, AT_REMOVEDIR) : result;
+  const int result = removed(AT_FDCWD, path, 0);
+  return result < 0 && errno == EISDIR ? removed(AT_FDCWD, path, AT_REMOVEDIR) : result;
 }
-int rmdir(const char* path) noexcept { return removed(path, AT_REMOVEDIR); }
-int mkdir(const char* path, mode_t mode) noexcept {
-  const std::string whole = below(AT_FDCWD, path);
-  return recorded(!whole.empty() && inode_of(whole) == 0, [&] { return static_cast<int>(::syscall(SYS_mkdirat, AT_FDCWD, path, mode)); },
-                  {FileCall::Kind::make_folder, 0, 0, whole, "", ""});
-}
+int rmdir(const char* path) noexcept { return removed(AT_FDCWD, path, AT_REMOVEDIR); }
+int mkdir(const char* path, mode_t mode) noexcept { return folder_made(AT_FDCWD, path, mode); }
+int mkdirat(int at, const char* path, mode_t mode) noexcept { return folder_made(at, path, mode); }
 
 }  // extern "C"
