@@ -10,6 +10,7 @@
 #include "daemon/modeld/retiring.h"
 #include "mesh/deck/data/deck.h"
 #include "mesh/deck/open.h"
+#include "mesh/document/branches.h"
 #include "mesh/document/deck_settings.h"
 #include "mesh/document/edit_kinds.h"
 #include "mesh/document/history.h"
@@ -49,6 +50,17 @@ auto if_memory_allows(const Work& work, const std::string& file) -> decltype(wor
   } catch (const std::bad_alloc&) {
     return fail(file, "there isn't enough memory to do this; everything is as it was");
   }
+}
+
+/// "undid 2 steps", "did again: 1 step": what was gone through.
+std::string words_of_way(std::span<const Edit> way) {
+  std::size_t undone = 0, done = 0;
+  for (const Edit& edit : way) {
+    undone += std::holds_alternative<Undo>(edit) ? 1 : 0;
+    done += std::holds_alternative<Redo>(edit) ? 1 : 0;
+  }
+  if (done == 0) return "undid " + counted(undone, "step");
+  return (undone > 0 ? "undid " + counted(undone, "step") + ", " : std::string()) + "did again: " + counted(done, "step");
 }
 
 bool differs(const Generation& a, const Generation& b) {
@@ -169,7 +181,9 @@ Prepared DocumentKeeper::as_push(const Prepared& prepared, const Edit& edit) {
   next->made_by = name(edit);
   Prepared push;
   // Uses the document's cap, so that `recorded` can undo each step that the document can undo.
-  push.drop_oldest = generations_over_cap(open_->recorded, *next);
+  const HistoryExcess excess = excess_with(open_->recorded, *next);
+  push.drop_oldest = excess.generations;
+  push.drop_branches = excess.branches;
   push.next = std::move(next);
   std::erase_if(open_->twins, [](const Twin& twin) { return twin.recorded.use_count() == 1; });
   open_->twins.push_back({push.next, prepared.next});
@@ -187,6 +201,25 @@ std::size_t DocumentKeeper::same_drop(const Prepared& prepared) const {
   return 0;
 }
 
+/// Journals the step, then commits it; after an error everything is as before. `recorded`: the step of `recorded`; null: it has none.
+Result<void> DocumentKeeper::keep(const Edit& edit, const Prepared* recorded, const Prepared& prepared) {
+  OpenDocument& open = *open_;
+  // After the record is written, nothing may fail for lack of memory.
+  Document next = open.document;
+  Document next_recorded = open.recorded;
+  commit(next, prepared);
+  if (recorded != nullptr) {
+    commit(next_recorded, *recorded);
+    appending_->begin();
+    Result<void> appended = open.journal.append(open.recorded, edit, *recorded);
+    appending_->end();
+    if (!appended) return appended;
+  }
+  open.document = std::move(next);
+  open.recorded = std::move(next_recorded);
+  return {};
+}
+
 Result<EditReport> DocumentKeeper::edit(const Edit& edit, const Progress& progress, Clock* clock) {
   if (!open_) return fail("", "no document is open");
   OpenDocument& open = *open_;
@@ -195,6 +228,7 @@ Result<EditReport> DocumentKeeper::edit(const Edit& edit, const Progress& progre
         open.document.path.string(),
         "its last save isn't finished, and edits made now could be lost: save again to finish it, save under another name, or close "
         "the document");
+  if (const auto* branch = std::get_if<TakeBranch>(&edit)) return take_branch(*branch, clock);
   const Result<Edit> whole = self_contained(open.document, edit);
   if (!whole) return fail(whole.error());
   Result<Prepared> prepared = if_memory_allows([&] { return prepare(open.document, *whole, progress, clock); }, "");
@@ -207,17 +241,13 @@ Result<EditReport> DocumentKeeper::edit(const Edit& edit, const Progress& progre
       prepared->next->model.topology_change != open.recorded.current().model.topology_change)
     return fail("", "this step can't be undone any more: it changed the structure, and the journal no longer has the state before it");
   Prepared recorded = follows ? *prepared : as_push(*prepared, *whole);
-  if (push) recorded.drop_oldest = same_drop(*prepared);
-  // After the record is written, nothing may fail for lack of memory.
-  open.recorded.generations.reserve(open.recorded.generations.size() + 1);
-  open.document.generations.reserve(open.document.generations.size() + 1);
-  appending_->begin();
-  Result<void> appended = open.journal.append(open.recorded, *whole, recorded);
-  appending_->end();
-  if (!appended) return fail(std::move(appended.error()));
-  commit(open.recorded, std::move(recorded));
+  if (push) {
+    recorded.drop_oldest = same_drop(*prepared);
+    recorded.drop_branches = excess_with(open.recorded, *recorded.next).branches;
+  }
   const std::shared_ptr<const Judging> judging = open.document.current().judging;
-  commit(open.document, std::move(*prepared));
+  const Result<void> kept = if_memory_allows([&] { return keep(*whole, &recorded, *prepared); }, "");
+  if (!kept) return fail(kept.error());
   if (open.document.current().judging != judging) keep_judging(report);
   return report;
 }
@@ -225,27 +255,27 @@ Result<EditReport> DocumentKeeper::edit(const Edit& edit, const Progress& progre
 Result<EditReport> DocumentKeeper::go_to(std::uint64_t generation, const Progress& progress, Clock* clock) {
   if (!open_) return fail("", "no document is open");
   const Document& document = open_->document;
-  const auto found = std::ranges::find_if(document.generations, [&](const auto& each) { return each->number == generation; });
-  if (found == document.generations.end()) return fail("", "the history has no state " + std::to_string(generation) + " any more");
-  const auto target = static_cast<std::size_t>(found - document.generations.begin());
+  const Result<std::vector<Edit>> way = way_to(document, generation);
+  if (!way) return fail(way.error());
   const std::shared_ptr<const Generation> from = document.generations[document.cursor];
-  const std::size_t steps = target > document.cursor ? target - document.cursor : document.cursor - target;
-  const bool back = target < document.cursor;
+  const std::size_t steps = way->size();
+  const bool back = steps > 0 && std::holds_alternative<mesh::document::Undo>(way->back());
   EditReport report;
   report.before = report.after = from->counts;
   report.clusters_before = report.clusters_after = from->clusters->size();
-  std::size_t step = 0;
+  std::size_t step = 0, common_nodes = from->model.node_count();
   for (; step < steps; ++step) {
     if (progress && !progress(static_cast<double>(step) / static_cast<double>(steps))) {
       report.notes.push_back("stopped after " + std::to_string(step) + " of " + counted(steps, "step"));
       break;
     }
-    Result<EditReport> made = edit(back ? Edit(mesh::document::Undo{}) : Edit(mesh::document::Redo{}), {}, clock);
+    Result<EditReport> made = edit((*way)[step], {}, clock);
     if (!made && step == 0) return made;
     if (!made) {
       report.notes.push_back("stopped after " + std::to_string(step) + " of " + counted(steps, "step") + ": " + made.error().text());
       break;
     }
+    common_nodes = std::min(common_nodes, document.current().model.node_count());
     if (!report.mass_before) report.mass_before = made->mass_before, report.centre_before = made->centre_before;
     if (made->mass_after) report.mass_after = made->mass_after, report.centre_after = made->centre_after;
     report.after = made->after;
@@ -253,8 +283,10 @@ Result<EditReport> DocumentKeeper::go_to(std::uint64_t generation, const Progres
     report.milliseconds += made->milliseconds;
   }
   report.edit = back ? "undo" : "redo";
-  if (step > 0) report.notes.insert(report.notes.begin(), (back ? "undid " : "did again: ") + counted(step, "step"));
-  const mesh::NodeSet moved = mesh::moved_nodes(from->model, document.current().model);
+  if (step > 0) report.notes.insert(report.notes.begin(), words_of_way(std::span(*way).first(step)));
+  // In branches, nodes that were made after the fork have nothing in common but their place in the order.
+  mesh::NodeSet moved = mesh::moved_nodes(from->model, document.current().model);
+  std::erase_if(moved, [&](mesh::NodeIndex node) { return node.value >= common_nodes; });
   report.nodes_moved = moved.size();
   report.largest_move.reset();
   if (!moved.empty()) report.largest_move = mesh::largest_move(from->model, document.current().model, moved);
@@ -266,6 +298,34 @@ void DocumentKeeper::keep_judging(EditReport& report) const {
   const Document& document = open_->document;
   if (const Result<void> kept = write_deck_settings(document.current(), document.path); !kept)
     report.notes.push_back("target sizes and criteria are not kept beside the deck: " + kept.error().text());
+}
+
+/// The branch of `recorded` whose states are copies of this one's, and that leaves from the current state too. After a save there may be
+/// none: then the journal can't name it.
+std::optional<std::uint64_t> DocumentKeeper::recorded_branch(const Branch& branch) const {
+  for (const Branch& recorded : open_->recorded.branches) {
+    const auto is_copy = [&](const auto& copy, const auto& of) { return original_of(copy.get()) == of.get(); };
+    if (recorded.fork == open_->recorded.current().number && std::ranges::equal(recorded.states, branch.states, is_copy))
+      return recorded.number;
+  }
+  return std::nullopt;
+}
+
+/// Changes what redo leads to. A branch from before a save isn't in the journal: each redo into it is recorded as the resulting state.
+Result<EditReport> DocumentKeeper::take_branch(const TakeBranch& edit, Clock* clock) {
+  OpenDocument& open = *open_;
+  Result<Prepared> prepared = if_memory_allows([&] { return prepare(open.document, edit, {}, clock); }, "");
+  if (!prepared) return fail(std::move(prepared.error()));
+  const std::optional<std::uint64_t> number = recorded_branch(*find_branch(open.document, edit.number));
+  std::optional<Prepared> recorded;
+  if (number) {
+    recorded = *prepared;
+    recorded->branch = *number;
+  }
+  const Result<void> kept =
+      if_memory_allows([&] { return keep(TakeBranch{number.value_or(0)}, recorded ? &*recorded : nullptr, *prepared); }, "");
+  if (!kept) return fail(kept.error());
+  return prepared->report;
 }
 
 bool DocumentKeeper::is_blocked(const ipc::Open& request) const {
@@ -327,6 +387,7 @@ ipc::DocumentState DocumentKeeper::state() const {
   state.journalled_edits = open_->journal.records();
   // own_bytes of a generation is the cost of keeping the one before it.
   for (std::size_t i = 1; i < document.generations.size(); ++i) state.history_bytes += document.generations[i]->own_bytes;
+  for (const Branch& branch : document.branches) state.history_bytes += bytes_of(branch.states);
   state.history_cap = document.history_bytes;
   for (const auto& generation : document.generations) state.generations.push_back({generation->number, generation->made_by});
   state.files = open_->files;

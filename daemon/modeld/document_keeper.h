@@ -37,8 +37,9 @@ class DocumentKeeper {
   Result<bool> reopen(const Progress& progress);
   /// Prepares the edit, journals it, commits it. Errors: of the edit, of the journal.
   Result<mesh::document::EditReport> edit(const mesh::document::Edit& edit, const Progress& progress = {}, Clock* clock = nullptr);
-  /// Goes to a state of the history, step by step. When cancelled, or if a step can't be journalled or undone, it ends at the state that it
-  /// has reached. The report is of all steps together. Errors: no such state; why not a single step could be made.
+  /// Goes to a state of the history or of one of its branches, step by step. When cancelled, or if a step can't be journalled or undone, it
+  /// ends at the state that it has reached. The report is of all steps together. Errors: no such state; why not a single step could be
+  /// made.
   Result<mesh::document::EditReport> go_to(std::uint64_t generation, const Progress& progress = {}, Clock* clock = nullptr);
   /// Saves in place, or a copy to `path` that counts as saved. A cancel before the first file is replaced leaves all files as they were; a
   /// later one is ignored. If a save in place fails between two files, the replaced files get their former content back. If that fails
@@ -123,6 +124,9 @@ class DocumentKeeper {
   void forget(ReadySave& save);
   Result<void> end_unfinished_save();
   Result<void> begin_journal_anew();
+  Result<void> keep(const mesh::document::Edit& edit, const mesh::document::Prepared* recorded, const mesh::document::Prepared& prepared);
+  Result<mesh::document::EditReport> take_branch(const mesh::document::TakeBranch& edit, Clock* clock);
+  std::optional<std::uint64_t> recorded_branch(const mesh::document::Branch& branch) const;
   mesh::document::Prepared as_push(const mesh::document::Prepared& prepared, const mesh::document::Edit& edit);
   const mesh::document::Generation* own_step(mesh::document::Prepared::Step step) const;
   const mesh::document::Generation* original_of(const mesh::document::Generation* recorded) const;

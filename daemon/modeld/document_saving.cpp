@@ -55,11 +55,15 @@ Result<Journal> start_journal(const StateFolder& folder, const fs::path& path, D
 /// Gives the document's files the names of another deck with the same content.
 void rename_files(Document& document, const Document& other) {
   document.path = other.path;
-  for (std::shared_ptr<const Generation>& generation : document.generations) {
-    auto renamed = std::make_shared<Generation>(*generation);
-    renamed->relations = other.opened->relations;  // expressions name files by it
-    generation = std::move(renamed);
-  }
+  const auto rename = [&](std::vector<std::shared_ptr<const Generation>>& generations) {
+    for (std::shared_ptr<const Generation>& generation : generations) {
+      auto renamed = std::make_shared<Generation>(*generation);
+      renamed->relations = other.opened->relations;  // expressions name files by it
+      generation = std::move(renamed);
+    }
+  };
+  rename(document.generations);
+  for (Branch& branch : document.branches) rename(branch.states);
 }
 
 }  // namespace
@@ -237,6 +241,7 @@ Result<void> DocumentKeeper::begin_journal_anew() {
   Document next = open.document;
   next.generations = {next.opened};
   next.cursor = 0;
+  next.branches.clear();
   Result<Journal> journal = Journal::create(path, next);
   if (!journal) return fail(std::move(journal.error()));
   if (Result<void> carried = carry_over(open.document.current(), next, *journal); !carried) return carried;

@@ -16,6 +16,16 @@ namespace prismesh::modeld {
 
 namespace {
 
+ipc::History history_of(const PublishedState& published) {
+  ipc::History history{published.state.generation, published.state.generations, {}};
+  if (!published.document) return history;
+  for (const mesh::document::Branch& branch : published.document->branches) {
+    ipc::HistoryBranch& told = history.branches.emplace_back(ipc::HistoryBranch{branch.number, branch.fork, {}});
+    for (const auto& state : branch.states) told.generations.push_back({state->number, state->made_by});
+  }
+  return history;
+}
+
 constexpr std::size_t kMaxWaiting = 256;
 constexpr std::size_t kMaxWaitingBytes = std::size_t{32} << 20;
 constexpr std::size_t kMaxLeases = 256;
@@ -81,8 +91,7 @@ void RequestScheduler::request(ipc::ClientId client, std::uint64_t number, ipc::
   if (const auto* snapshot = std::get_if<ipc::GetSnapshot>(&request)) return give_snapshot(client, number, *snapshot);
   if (const auto* camera = std::get_if<ipc::ShareCamera>(&request)) return share_camera(client, *camera);
   if (const auto* cancelled = std::get_if<ipc::Cancel>(&request)) return cancel(client, number, *cancelled);
-  if (std::holds_alternative<ipc::GetHistory>(request))
-    return channel_.answer(client, number, ipc::History{published_.state.generation, published_.state.generations}, {});
+  if (std::holds_alternative<ipc::GetHistory>(request)) return channel_.answer(client, number, history_of(published_), {});
   if (std::holds_alternative<ipc::GetState>(request)) return channel_.answer(client, number, state(), {});
   line_up(client, number, std::move(request), bytes);
 }

@@ -50,9 +50,9 @@ struct Close {
 struct ApplyEdit {
   mesh::document::Edit edit;
 };
-/// Goes to a state of the history by as many undos or redos as that takes; each is journalled as one.
+/// Goes to a state of the history or of a branch by as many undos, redos and branches taken as that needs; each is journalled as one.
 struct GoTo {
-  std::uint64_t generation = 0;  ///< one of DocumentState::generations
+  std::uint64_t generation = 0;  ///< one of those that History lists
 };
 struct BeginDrag {
   mesh::document::Edit edit;  ///< translate, lift, slide, rotate or move; the displacement is ignored
@@ -173,10 +173,17 @@ struct DocumentState {
   std::vector<DeckFile> files;
   std::vector<mesh::deck::Warning> warnings;
 };
+/// States that an edit took the place of after they were undone; GoTo brings them back.
+struct HistoryBranch {
+  std::uint64_t number = 0;
+  std::uint64_t fork = 0;                     ///< the state that the first one was made from; may be in another branch
+  std::vector<ListedGeneration> generations;  ///< oldest first
+};
 /// The states that undo and redo move among; without a document there are none.
 struct History {
   std::uint64_t generation = 0;               ///< the current one
   std::vector<ListedGeneration> generations;  ///< oldest first
+  std::vector<HistoryBranch> branches;        ///< in the order in which they were left
 };
 struct Saved {
   std::string path;

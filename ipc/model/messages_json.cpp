@@ -60,7 +60,8 @@ PRISMESH_MESSAGE(ipc::DocumentState, "state", f("open", m.open), f("busy", m.bus
                  f("generations", m.generations), f("files", m.files), f("warnings", m.warnings));
 PRISMESH_JSON_OBJECT(ipc::ListedGeneration, f("number", m.number), f("made_by", m.made_by));
 PRISMESH_JSON_OBJECT(ipc::DeckFile, f("name", m.name), f("shells", m.shells), f("parts", m.parts));
-PRISMESH_MESSAGE(ipc::History, "history", f("generation", m.generation), f("generations", m.generations));
+PRISMESH_JSON_OBJECT(ipc::HistoryBranch, f("number", m.number), f("fork", m.fork), f("generations", m.generations));
+PRISMESH_MESSAGE(ipc::History, "history", f("generation", m.generation), f("generations", m.generations), f("branches", m.branches));
 PRISMESH_MESSAGE(ipc::Saved, "saved", f("path", m.path), f("nodes_written", m.nodes_written), f("lines_changed", m.lines_changed),
                  f("notes", m.notes));
 PRISMESH_MESSAGE(ipc::SaveWould, "save_would", f("replace", m.replace), f("make", m.make));

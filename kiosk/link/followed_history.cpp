@@ -10,6 +10,17 @@ std::optional<std::size_t> FollowedHistory::place_of(std::uint64_t generation) c
   return found == told_.generations.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - told_.generations.begin()));
 }
 
+std::string_view FollowedHistory::maker_of(std::uint64_t generation) const {
+  const auto maker_in = [&](const std::vector<ipc::ListedGeneration>& states) -> std::string_view {
+    const auto found = std::ranges::find(states, generation, &ipc::ListedGeneration::number);
+    return found == states.end() ? std::string_view() : found->made_by;
+  };
+  std::string_view maker = maker_in(told_.generations);
+  for (auto branch = told_.branches.begin(); maker.empty() && branch != told_.branches.end(); ++branch)
+    maker = maker_in(branch->generations);
+  return maker;
+}
+
 void FollowedHistory::ask() {
   if (!stale()) return;
   stale_ = false;

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "kiosk/link/connection.h"
@@ -16,6 +17,10 @@ class FollowedHistory final : public ConnectionListener {
 
   /// Oldest first; empty: not told yet.
   const std::vector<ipc::ListedGeneration>& states() const { return told_.generations; }
+  /// Undone states that edits took the place of.
+  const std::vector<ipc::HistoryBranch>& branches() const { return told_.branches; }
+  /// What made a state of the history or of a branch; empty: it isn't known.
+  std::string_view maker_of(std::uint64_t generation) const;
   /// Index of a state; absent: it isn't among them.
   std::optional<std::size_t> place_of(std::uint64_t generation) const;
   /// The server may have other states by now, and wasn't asked for them.

@@ -14,16 +14,25 @@
 
 namespace prismesh::mesh::document {
 
+/// States that an edit took the place of after they were undone. They can come back (TakeBranch).
+struct Branch {
+  std::uint64_t number = 0;                               ///< its name; counts from 1, never reused
+  std::uint64_t fork = 0;                                 ///< number of the generation that the first state was made from
+  std::vector<std::shared_ptr<const Generation>> states;  ///< oldest first, never empty
+};
+
 struct Document {
   std::filesystem::path path;
   std::shared_ptr<const deck::Deck> deck;
   DocumentSettings settings;
-  std::size_t history_bytes = std::size_t{2} << 30;            ///< max size of what the old generations don't share
+  std::size_t history_bytes = std::size_t{2} << 30;            ///< max size of what the old generations and the branches don't share
   std::vector<std::shared_ptr<const Generation>> generations;  ///< oldest first; undo and redo move among them
   std::size_t cursor = 0;                                      ///< the current one
   std::shared_ptr<const Generation> opened;                    ///< as read from the deck; what saving compares with
   std::uint64_t next_number = 1;
   deck::TextMaker make_text = deck::text_changes;  ///< the new text of the deck's files when it is saved
+  std::vector<Branch> branches;  ///< in the order in which they were left; each fork is in `generations` or in another branch
+  std::uint64_t next_branch = 1;
 
   const Generation& current() const { return *generations[cursor]; }
   bool can_undo() const { return cursor > 0; }

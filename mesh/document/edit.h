@@ -211,9 +211,13 @@ struct Separate {
 
 struct Undo {};
 struct Redo {};
+/// Makes redo lead to a branch that leaves from the current state. What redo led to before becomes a branch.
+struct TakeBranch {
+  std::uint64_t number = 0;  ///< Branch::number
+};
 
 using Edit = std::variant<Select, SelectRegion, SelectLasso, Grow, Shrink, Invert, SetParts, SetTargetSize, SetCriteria, Translate, Lift,
-                          Slide, Rotate, Move, Relax, Repair, Restructure, Separate, Undo, Redo>;
+                          Slide, Rotate, Move, Relax, Repair, Restructure, Separate, Undo, Redo, TakeBranch>;
 
 /// The Shaping of a shaping edit; null for the others.
 const Shaping* shaping_of(const Edit& edit);

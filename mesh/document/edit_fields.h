@@ -174,5 +174,6 @@ PRISMESH_JSON_OBJECT(mesh::document::Separate, f("on", m.on), f("against", m.aga
                      f("allowed_depth", m.allowed_depth, kNotNegative), f("follow", m.follow));
 PRISMESH_JSON_OBJECT(mesh::document::Undo, );
 PRISMESH_JSON_OBJECT(mesh::document::Redo, );
+PRISMESH_JSON_OBJECT(mesh::document::TakeBranch, f.required("number", m.number));
 
 }  // namespace prismesh::json

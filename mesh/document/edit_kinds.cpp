@@ -38,6 +38,7 @@ std::span<const EditKind> edit_kinds() {
         {"separate", EditGroup::contact, Separate{}},
         {"undo", step, Undo{}},
         {"redo", step, Redo{}},
+        {"branch", step, TakeBranch{}},
     };
     for (const Operation by_hand : {Operation::split, Operation::collapse, Operation::merge, Operation::swap})
       kinds.push_back({repair::name(by_hand), mending, Restructure{by_hand, {}}});

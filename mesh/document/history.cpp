@@ -1,5 +1,9 @@
 #include "mesh/document/history.h"
 
+#include <span>
+#include <vector>
+
+#include "mesh/document/branches.h"
 #include "mesh/model/adjacency.h"
 #include "mesh/model/topology_change.h"
 
@@ -53,14 +57,20 @@ std::size_t own_bytes(const Generation& before, const Generation& next) {
   return bytes;
 }
 
-std::size_t generations_over_cap(const Document& document, const Generation& next) {
+HistoryExcess excess_with(const Document& document, const Generation& next) {
   // generations[i].own_bytes is the cost of keeping generations[i - 1].
   std::size_t total = next.own_bytes;
   for (std::size_t i = 1; i <= document.cursor; ++i) total += document.generations[i]->own_bytes;
-  std::size_t drop = 0;
-  while (total > document.history_bytes && drop <= document.cursor) {
-    total -= drop < document.cursor ? document.generations[drop + 1]->own_bytes : next.own_bytes;
-    ++drop;
+  const bool leaves = leaves_branch(document);
+  std::vector<std::size_t> branches;
+  for (const Branch& branch : document.branches) branches.push_back(bytes_of(branch.states));
+  if (leaves) branches.push_back(bytes_of(std::span(document.generations).subspan(document.cursor + 1)));
+  for (const std::size_t bytes : branches) total += bytes;
+  HistoryExcess drop;
+  while (total > document.history_bytes && drop.branches < branches.size()) total -= branches[drop.branches++];
+  while (total > document.history_bytes && drop.generations <= document.cursor) {
+    total -= drop.generations < document.cursor ? document.generations[drop.generations + 1]->own_bytes : next.own_bytes;
+    ++drop.generations;
   }
   return drop;
 }
@@ -68,6 +78,7 @@ std::size_t generations_over_cap(const Document& document, const Generation& nex
 Document with_current(const Document& document, std::shared_ptr<const Generation> generation) {
   Document further = document;
   further.generations.resize(document.cursor + 1);
+  further.branches.clear();
   further.generations.push_back(std::move(generation));
   further.cursor = further.generations.size() - 1;
   return further;

@@ -13,10 +13,10 @@
 #include "mesh/document/edit_kinds.h"
 #include "mesh/document/history.h"
 #include "mesh/document/journal_file.h"
+#include "mesh/document/journal_rebuild.h"
 #include "mesh/document/journal_records.h"
 #include "mesh/document/judge_parts.h"
 #include "mesh/document/judging_rules.h"
-#include "mesh/document/restructure.h"
 #include "mesh/select/expression.h"
 
 namespace prismesh::mesh::document {
@@ -138,58 +138,6 @@ Result<void> take_settings(const JournalHeader& header, Document& document, cons
   return {};
 }
 
-std::string edit_name(std::string_view intent) {
-  const json::Json edit = json::Json::parse(intent, nullptr, false);
-  std::string name = "edit";
-  if (!edit.is_object()) return name;
-  json::FieldReader(edit, json::Author::program)("edit", name);
-  return name;
-}
-
-/// Whether the edit gave the model a new shape, which relaxing and repairing keep. Undo and redo across a save are recorded as edits with a
-/// delta.
-bool reshapes(std::string_view intent) {
-  const Result<Edit> edit = parse_edit(intent);
-  if (!edit) return false;
-  const EditGroup group = kind_of(*edit).group;
-  return group == EditGroup::shaping || group == EditGroup::contact || group == EditGroup::step;
-}
-
-/// The generation that results from applying the record's delta to the current one.
-Result<std::shared_ptr<const Generation>> rebuilt(const Document& document, const JournalRecord& record) {
-  const std::optional<std::vector<std::byte>> delta = base64_decode(record.delta);
-  if (!delta) return fail("", "its delta isn't base64");
-  auto next = std::make_shared<Generation>(document.current());
-  const Result<NodeSet> moved = apply_delta(*delta, *next);
-  if (!moved) return fail(moved.error());
-  std::shared_ptr<const Judging> judging = std::exchange(next->judging, document.current().judging);
-  settle_growth(document.current(), *moved, *next);
-  if (judging != next->judging) judge_by(std::move(judging), *next);
-  if (reshapes(record.intent)) next->surface = std::make_shared<const Model>(next->model);
-  next->number = document.next_number;
-  next->made_by = edit_name(record.intent);
-  next->own_bytes = own_bytes(document.current(), *next);
-  return std::shared_ptr<const Generation>(std::move(next));
-}
-
-Result<void> take_record(const JournalRecord& record, Document& document, const std::string& file) {
-  const auto wrong = [&](const std::string& what) {
-    return fail(file, record.line, "edit " + std::to_string(record.number) + " can't be brought back: " + what);
-  };
-  Prepared prepared;
-  prepared.step = record.step;
-  prepared.drop_oldest = record.drop_oldest;
-  if (record.step == Prepared::Step::push) {
-    Result<std::shared_ptr<const Generation>> next = rebuilt(document, record);
-    if (!next) return wrong(next.error().message);
-    prepared.next = std::move(*next);
-  } else if (record.step == Prepared::Step::undo ? !document.can_undo() : !document.can_redo()) {
-    return wrong("there is nothing to " + std::string(record.step == Prepared::Step::undo ? "undo" : "redo"));
-  }
-  commit(document, std::move(prepared));
-  return {};
-}
-
 }  // namespace
 
 Journal::Journal(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -253,7 +201,8 @@ Result<void> Journal::append(const Document& document, const Edit& edit, const P
   const bool push = prepared.step == Prepared::Step::push;
   const std::string delta = push ? base64_encode(encode_delta(document.current(), *prepared.next)) : "";
   const std::string intent = intent_text(prepared.as_done ? *prepared.as_done : edit);
-  const std::string text = record_text({impl_->records + 1, intent, prepared.step, prepared.drop_oldest, delta}, impl_->check);
+  const std::string text = record_text(
+      {impl_->records + 1, intent, prepared.step, prepared.drop_oldest, delta, 0, prepared.drop_branches, prepared.branch}, impl_->check);
   if (const Result<void> appended = impl_->file.append(text); !appended) return appended;
   ++impl_->records;
   impl_->check = check_in(text);

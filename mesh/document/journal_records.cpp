@@ -46,6 +46,7 @@ std::string_view step_name(Prepared::Step step) {
   switch (step) {
     case Prepared::Step::undo: return "undo";
     case Prepared::Step::redo: return "redo";
+    case Prepared::Step::branch: return "branch";
     case Prepared::Step::push: break;
   }
   return "push";
@@ -96,6 +97,8 @@ struct RecordFields {
   std::uint64_t number = 0;
   Prepared::Step step = Prepared::Step::push;
   std::size_t drop_oldest = 0;
+  std::size_t drop_branches = 0;
+  std::uint64_t branch = 0;
   std::size_t delta_size = 0;
   std::string delta_check;
 };
@@ -121,9 +124,11 @@ PRISMESH_JSON_OBJECT(mesh::document::JournalHeader::PartSizes, f.required("on", 
 PRISMESH_JSON_NAMES(mesh::document::Prepared::Step,
                     {{mesh::document::step_name(mesh::document::Prepared::Step::push), mesh::document::Prepared::Step::push},
                      {mesh::document::step_name(mesh::document::Prepared::Step::undo), mesh::document::Prepared::Step::undo},
-                     {mesh::document::step_name(mesh::document::Prepared::Step::redo), mesh::document::Prepared::Step::redo}});
+                     {mesh::document::step_name(mesh::document::Prepared::Step::redo), mesh::document::Prepared::Step::redo},
+                     {mesh::document::step_name(mesh::document::Prepared::Step::branch), mesh::document::Prepared::Step::branch}});
 PRISMESH_JSON_OBJECT(mesh::document::RecordFields, f.required("n", m.number), f.required("step", m.step),
-                     f.required("dropped", m.drop_oldest), f.required("delta", m.delta_size), f.required("delta_check", m.delta_check));
+                     f.required("dropped", m.drop_oldest), f("dropped_branches", m.drop_branches), f("branch", m.branch),
+                     f.required("delta", m.delta_size), f.required("delta_check", m.delta_check));
 
 }  // namespace prismesh::json
 
@@ -197,7 +202,8 @@ Result<RecordState> read_record(Walker& walker, const std::function<Result<void>
   const std::string_view delta = text.substr(newline + 1, fields->delta_size);
   if (text[newline + 1 + fields->delta_size] != '\n' || check_of_delta(delta) != fields->delta_check)
     return walker.damaged(1, "the changes of edit " + std::to_string(fields->number) + " aren't as they were written");
-  const JournalRecord record{fields->number, *intent, fields->step, fields->drop_oldest, delta, walker.end().lines + 1};
+  const JournalRecord record{fields->number,        *intent,       fields->step, fields->drop_oldest, delta, walker.end().lines + 1,
+                             fields->drop_branches, fields->branch};
   walker.advance(newline + 1 + fields->delta_size + 1, 2, check_in(line), true);
   if (const Result<void> taken = on_record(record); !taken) return fail(taken.error());
   return RecordState::complete;
@@ -218,7 +224,10 @@ std::string record_text(const JournalRecord& record, std::string_view check) {
   line += record.intent;
   line += ",\"step\":\"";
   line += step_name(record.step);
-  line += "\",\"dropped\":" + std::to_string(record.drop_oldest) + ",\"delta\":" + std::to_string(record.delta.size());
+  line += "\",\"dropped\":" + std::to_string(record.drop_oldest);
+  if (record.drop_branches > 0) line += ",\"dropped_branches\":" + std::to_string(record.drop_branches);
+  if (record.step == Prepared::Step::branch) line += ",\"branch\":" + std::to_string(record.branch);
+  line += ",\"delta\":" + std::to_string(record.delta.size());
   line += ",\"delta_check\":\"" + check_of_delta(record.delta) + "\"";
   std::string text = sealed(std::move(line), check) + "\n";
   text.reserve(text.size() + record.delta.size() + 1);

@@ -53,6 +53,8 @@ struct JournalRecord {
   std::size_t drop_oldest = 0;
   std::string_view delta;  ///< base64
   long line = 0;           ///< of its intent in the text, from 1
+  std::size_t drop_branches = 0;
+  std::uint64_t branch = 0;  ///< of step branch
 };
 
 /// Where the undamaged part ends.

@@ -5,6 +5,7 @@
 
 #include "base/counted.h"
 #include "mesh/document/apply.h"
+#include "mesh/document/branches.h"
 #include "mesh/document/history.h"
 #include "mesh/model/node_set.h"
 #include "mesh/model/topology_change.h"
@@ -33,6 +34,30 @@ Result<Prepared> prepare_step(const Document& document, bool back) {
   return prepared;
 }
 
+Result<Prepared> prepare_branch(const Document& document, std::uint64_t number) {
+  const Branch* branch = find_branch(document, number);
+  if (branch == nullptr) return fail("", "the history has no branch " + std::to_string(number));
+  if (branch->fork != document.current().number)
+    return fail("", "branch " + std::to_string(number) + " leaves from state " + std::to_string(branch->fork) +
+                        ": undo or redo to that state first");
+  Prepared prepared;
+  prepared.step = Prepared::Step::branch;
+  prepared.branch = number;
+  prepared.next = document.generations[document.cursor];
+  prepared.report.notes.push_back("redo now leads to branch " + std::to_string(number));
+  return prepared;
+}
+
+void say_dropped(const Document& document, Prepared& prepared) {
+  if (prepared.drop_branches > 0)
+    prepared.report.notes.push_back("the oldest " +
+                                    (prepared.drop_branches == 1 ? "branch" : std::to_string(prepared.drop_branches) + " branches") +
+                                    " of the history went: it is kept within " + counted(document.history_bytes, "byte"));
+  if (prepared.drop_oldest > 0)
+    prepared.report.notes.push_back("the oldest " + counted(prepared.drop_oldest, "step") +
+                                    " can't be undone any more: the history is kept within " + counted(document.history_bytes, "byte"));
+}
+
 template <class E>
 Result<Prepared> prepare_push(const Document& document, const E& edit, std::string_view edit_name, const Progress& progress) {
   const Generation& current = document.current();
@@ -54,10 +79,10 @@ Result<Prepared> prepare_push(const Document& document, const E& edit, std::stri
   next->number = document.next_number;
   next->made_by = edit_name;
   next->own_bytes = own_bytes(current, *next);
-  prepared.drop_oldest = generations_over_cap(document, *next);
-  if (prepared.drop_oldest > 0)
-    prepared.report.notes.push_back("the oldest " + counted(prepared.drop_oldest, "step") +
-                                    " can't be undone any more: the history is kept within " + counted(document.history_bytes, "byte"));
+  const HistoryExcess excess = excess_with(document, *next);
+  prepared.drop_oldest = excess.generations;
+  prepared.drop_branches = excess.branches;
+  say_dropped(document, prepared);
   prepared.next = std::move(next);
   return prepared;
 }
@@ -82,6 +107,8 @@ Result<Prepared> prepare(const Document& document, const Edit& edit, const Progr
         using E = std::decay_t<decltype(each)>;
         if constexpr (std::is_same_v<E, Undo> || std::is_same_v<E, Redo>)
           return prepare_step(document, std::is_same_v<E, Undo>);
+        else if constexpr (std::is_same_v<E, TakeBranch>)
+          return prepare_branch(document, each.number);
         else
           return prepare_push(document, each, name(edit), progress);
       },
@@ -103,15 +130,17 @@ void commit(Document& document, Prepared prepared) {
   switch (prepared.step) {
     case Prepared::Step::undo: --document.cursor; return;
     case Prepared::Step::redo: ++document.cursor; return;
+    case Prepared::Step::branch: take_branch(document, prepared.branch); return;
     case Prepared::Step::push: break;
   }
   auto& generations = document.generations;
-  generations.resize(document.cursor + 1);
+  put_newer_aside(document);
   document.next_number = prepared.next->number + 1;
   generations.push_back(std::move(prepared.next));
   generations.erase(generations.begin(),
                     generations.begin() + static_cast<std::ptrdiff_t>(std::min(prepared.drop_oldest, generations.size() - 1)));
   document.cursor = generations.size() - 1;
+  if (prepared.drop_branches + prepared.drop_oldest > 0) drop_branches(document, prepared.drop_branches);
 }
 
 Result<EditReport> apply(Document& document, const Edit& edit, const Progress& progress, Clock* clock) {

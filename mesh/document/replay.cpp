@@ -1,7 +1,11 @@
 #include <algorithm>
+#include <map>
+#include <optional>
+#include <span>
 #include <variant>
 
 #include "base/file.h"
+#include "mesh/document/branches.h"
 #include "mesh/document/edit_json.h"
 #include "mesh/document/edit_kinds.h"
 #include "mesh/document/journal.h"
@@ -67,11 +71,29 @@ class IntendedHistory {
   /// Whether the selection isn't the intended one.
   bool selection_lost() const { return cursor_ > 0 && steps_[cursor_ - 1].selection_lost; }
 
-  void push(bool applied, SelectionUse use) {
+  /// `left`: the branch that the document made of what was undone, if it made one.
+  void push(bool applied, const EditKind& kind, SelectionUse use, std::optional<std::uint64_t> left) {
     const bool lost = use.writes ? !applied : selection_lost();
-    steps_.resize(cursor_);
-    steps_.push_back({applied, lost});
+    put_newer_aside(left);
+    steps_.push_back({next_step_++, applied, lost, kind.group == EditGroup::selection});
     ++cursor_;
+  }
+  /// The document's branch that an intended one stands for; absent: it isn't there as intended.
+  std::optional<std::uint64_t> branch(std::uint64_t number) const {
+    const auto found = branches_.find(number);
+    if (found == branches_.end() || found->second.fork != here()) return std::nullopt;
+    return found->second.stands_for;
+  }
+  /// The steps of the branch become those that redo leads to. `taken`: in the document too.
+  void take(std::uint64_t number, bool taken, std::optional<std::uint64_t> left) {
+    const auto found = branches_.find(number);
+    if (found == branches_.end() || found->second.fork != here()) return;
+    std::vector<Step> steps = std::move(found->second.steps);
+    branches_.erase(found);
+    put_newer_aside(left);
+    if (!taken)
+      for (Step& step : steps) step.applied = false, step.selection_lost = true;
+    steps_.insert(steps_.end(), steps.begin(), steps.end());
   }
   /// Moves over an edit by undo (or redo); returns whether that edit wasn't applied.
   bool skips(bool back) {
@@ -82,11 +104,36 @@ class IntendedHistory {
 
  private:
   struct Step {
+    std::uint64_t number = 0;
     bool applied = false;
     bool selection_lost = false;  ///< after it
+    bool selects = false;
   };
+  struct Aside {
+    std::uint64_t fork = 0;  ///< Step::number; 0: the beginning
+    std::vector<Step> steps;
+    std::optional<std::uint64_t> stands_for;
+  };
+
+  std::uint64_t here() const { return cursor_ == 0 ? 0 : steps_[cursor_ - 1].number; }
+
+  /// As put_newer_aside of a document in which every edit was applied.
+  void put_newer_aside(std::optional<std::uint64_t> left) {
+    const std::span<const Step> newer = std::span(steps_).subspan(cursor_);
+    const auto is_fork = [&](const auto& each) { return std::ranges::find(newer, each.second.fork, &Step::number) != newer.end(); };
+    if (!std::ranges::all_of(newer, &Step::selects) || std::ranges::any_of(branches_, is_fork)) {
+      // Where an edit of it wasn't applied, the document may have put other states aside, or none.
+      if (!std::ranges::all_of(newer, &Step::applied)) left.reset();
+      branches_[next_branch_++] = {here(), {newer.begin(), newer.end()}, left};
+    }
+    steps_.resize(cursor_);
+  }
+
   std::vector<Step> steps_;
   std::size_t cursor_ = 0;
+  std::uint64_t next_step_ = 1;
+  std::map<std::uint64_t, Aside> branches_;
+  std::uint64_t next_branch_ = 1;
 };
 
 }  // namespace
@@ -102,8 +149,24 @@ std::vector<ReplayStep> replay(Document& document, const JournalIntents& intents
     step.edit = name(edit);
     const bool back = std::holds_alternative<Undo>(edit);
     const bool is_step = kind_of(edit).group == EditGroup::step;
-    if (is_step && intended.skips(back)) {
+    if (is_step && !std::holds_alternative<TakeBranch>(edit) && intended.skips(back)) {
       step.message = "the edit that it stands for wasn't applied";
+      steps.push_back(std::move(step));
+      continue;
+    }
+    const std::uint64_t next_branch = document.next_branch;
+    const auto left = [&] { return document.next_branch > next_branch ? std::optional(next_branch) : std::nullopt; };
+    if (const auto* branch = std::get_if<TakeBranch>(&edit)) {
+      const std::optional<std::uint64_t> wanted = intended.branch(branch->number);
+      const Result<EditReport> report = wanted
+                                            ? apply(document, TakeBranch{*wanted}, {}, clock)
+                                            : fail("", "branch " + std::to_string(branch->number) + " isn't there, or not all its edits");
+      intended.take(branch->number, report.has_value(), left());
+      step.applied = report.has_value();
+      if (report)
+        step.report = *report;
+      else
+        step.message = report.error().text();
       steps.push_back(std::move(step));
       continue;
     }
@@ -111,7 +174,7 @@ std::vector<ReplayStep> replay(Document& document, const JournalIntents& intents
     if (use.reads && intended.selection_lost()) {
       step.message = "the selection it acts on couldn't be made";
       steps.push_back(std::move(step));
-      intended.push(false, use);
+      intended.push(false, kind_of(edit), use, {});
       continue;
     }
     const auto within = [&](double fraction, const Doing& doing) {
@@ -124,7 +187,7 @@ std::vector<ReplayStep> replay(Document& document, const JournalIntents& intents
       step.report = std::move(*report);
     else
       step.message = report.error().text();
-    if (!is_step) intended.push(step.applied, use);
+    if (!is_step) intended.push(step.applied, kind_of(edit), use, left());
     steps.push_back(std::move(step));
   }
   return steps;

@@ -7,9 +7,11 @@
 
 #include "base/base64.h"
 #include "mesh/deck/open.h"
+#include "mesh/document/branches.h"
 #include "mesh/document/delta.h"
 #include "mesh/document/document.h"
 #include "mesh/document/generation.h"
+#include "mesh/document/journal_rebuild.h"
 #include "mesh/document/journal_records.h"
 #include "mesh/document/open.h"
 #include "mesh/document/prepare.h"
@@ -93,6 +95,39 @@ void fuzz_text(std::string_view text) {
     require(!end.error().message.empty() && end.error().line >= 1);
 }
 
+/// Steps in any order, branches and what is dropped included: the history holds together, whatever they name.
+void fuzz_steps(std::string_view text, const std::string& header) {
+  std::string journal = header;
+  std::string check = check_in(header);
+  std::uint64_t number = 0;
+  constexpr std::size_t kSteps = 40;
+  for (const char each : text.substr(0, kSteps)) {
+    const auto bits = static_cast<unsigned char>(each);
+    const std::string record = record_text({++number, R"({"edit":"lock"})", static_cast<Prepared::Step>(bits & 3), (bits >> 2) & 1U,
+                                            (bits & 3) == 0 ? "AgAAAAAAAAAAAAA=" : "", 0, (bits >> 3) & 1U, bits >> 4},
+                                           check);
+    check = check_in(record);
+    journal += record;
+  }
+  Document document = sample();
+  std::size_t states = 0;
+  const auto on_header = [](const JournalHeader&) { return Result<void>(); };
+  const auto on_record = [&](const JournalRecord& record) -> Result<void> {
+    if (Result<void> taken = take_record(record, document, "fuzz.journal"); !taken)
+      return {};  // such a step is refused, and changes nothing
+    require(document.cursor < document.generations.size());
+    states = document.generations.size();
+    for (const Branch& branch : document.branches) {
+      require(!branch.states.empty() && branch.number < document.next_branch);
+      states += branch.states.size();
+      require(way_to(document, branch.states.back()->number).has_value());
+    }
+    require(states <= number + 1);
+    return {};
+  };
+  require(read_journal(journal, "fuzz.journal", on_header, on_record).has_value());
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -108,6 +143,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string header = header_text({"0", {"fuzz.k", "0", 16, 9, 1}, {LengthUnit::mm, 1.0, "default"}});
   const std::string record = record_text({1, text.substr(0, half), Prepared::Step::push, 0, text.substr(half)}, check_in(header));
   fuzz_text(header + record);
+  fuzz_steps(text, header);
   fuzz_text(header + std::string(text));
   return 0;
 }

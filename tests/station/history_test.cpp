@@ -50,7 +50,7 @@ TEST_F(HistoryTest, a_click_goes_to_any_state) {
   station_->show_people("history");
 }
 
-TEST_F(HistoryTest, newer_states_are_given_up_only_after_a_question) {
+TEST_F(HistoryTest, newer_states_are_set_aside_only_after_a_question_and_come_back_by_their_branch) {
   make_three_states();
   station_->click_item("state 1");
   ASSERT_TRUE(says("state 1", "current"));
@@ -58,7 +58,7 @@ TEST_F(HistoryTest, newer_states_are_given_up_only_after_a_question) {
   const Station::Item view = *station_->item("view");
   station_->move(view.x + 5, view.y + 5);  // the ground
   station_->key("s");                      // shows the part: an edit
-  EXPECT_FALSE(station_->kiosk().wait_for("asks give up 2").empty());
+  EXPECT_FALSE(station_->kiosk().wait_for("asks set aside 2").empty());
   station_->settled_aim();
   station_->key("Escape");
   station_->settled_aim();
@@ -66,7 +66,7 @@ TEST_F(HistoryTest, newer_states_are_given_up_only_after_a_question) {
   EXPECT_EQ(state_of("state 3"), "Lock, undone") << "and nothing is lost";
   station_->kiosk().skip_lines();
   station_->key("s");
-  EXPECT_FALSE(station_->kiosk().wait_for("asks give up 2").empty());
+  EXPECT_FALSE(station_->kiosk().wait_for("asks set aside 2").empty());
   station_->settled_aim();
   station_->key("g");
   EXPECT_TRUE(says("state 4", "Show, current"));
@@ -76,6 +76,19 @@ TEST_F(HistoryTest, newer_states_are_given_up_only_after_a_question) {
   ASSERT_TRUE(says("state 1", "current"));
   station_->key("ctrl+y");
   ASSERT_TRUE(says("state 4", "current")) << "undo and redo ask nothing";
+  ASSERT_TRUE(says("branch 1", "2 states, from Hide: Show, Lock"));
+  station_->settled_aim();
+  station_->show_people("history_branch");
+  station_->kill_model_server();
+  ASSERT_FALSE(station_->kiosk().wait_for("disconnected").empty());
+  station_->start_model_server();
+  ASSERT_FALSE(station_->kiosk().wait_for("connected").empty());
+  ASSERT_TRUE(says("branch 1", "2 states, from Hide: Show, Lock")) << "the journal has it";
+  station_->settled_aim();
+  station_->click_item("branch 1");
+  ASSERT_TRUE(says("state 3", "Lock, current"));
+  EXPECT_EQ(state_of("state 4"), "");
+  EXPECT_TRUE(says("branch 2", "1 state, from Hide: Show"));
 }
 
 TEST_F(HistoryTest, undone_selections_alone_are_given_up_without_a_question) {

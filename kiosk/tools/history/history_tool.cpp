@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "base/counted.h"
 #include "kiosk/toolkit/edits.h"
 #include "kiosk/toolkit/open_panels.h"
 #include "kiosk/toolkit/tool_set.h"
@@ -13,6 +14,18 @@
 namespace prismesh::kiosk::tools::history {
 
 using panels::Reply;
+
+namespace {
+
+/// "Lift, Lock": the first few, by name.
+std::string some_of(const std::vector<std::string>& states) {
+  constexpr std::size_t kNamed = 6;
+  std::string names;
+  for (std::size_t i = 0; i < states.size() && i < kNamed; ++i) names += (i == 0 ? "" : ", ") + states[i];
+  return states.size() > kNamed ? names + ", .." : names;
+}
+
+}  // namespace
 
 Result<void> HistoryTool::follow() {
   const auto& shown = context_.shown.snapshot;
@@ -38,6 +51,14 @@ StateFacts HistoryTool::facts() const {
   for (const ipc::ListedGeneration& state : context_.link.history.states())
     facts.states.push_back({state.number, words_of_maker(state.made_by), link::is_selecting(state.made_by)});
   facts.current = context_.link.history.place_of(context_.shown.snapshot->info().generation);
+  for (const ipc::HistoryBranch& branch : context_.link.history.branches()) {
+    if (branch.generations.empty()) continue;
+    const std::string fork = words_of_maker(context_.link.history.maker_of(branch.fork));
+    std::vector<std::string> states;
+    for (const ipc::ListedGeneration& state : branch.generations) states.push_back(words_of_maker(state.made_by));
+    facts.branches.push_back({branch.number, fmt::format("{}, from {}", counted(states.size(), "state"), fork), some_of(states),
+                              branch.generations.back().number});
+  }
   return facts;
 }
 
@@ -88,19 +109,14 @@ bool HistoryTool::hold(const mesh::document::Edit& edit, bool sends) {
 }
 
 void HistoryTool::ask(const std::vector<std::string>& lost) {
-  constexpr std::size_t kNamed = 6;
   toolkit::set_cover(context_, toolkit::Cover::none);
   panels::Question& question = question_.emplace();
   question.title =
-      lost.empty() ? "Give up the newer states?" : fmt::format("Give up {} newer state{}?", lost.size(), lost.size() == 1 ? "" : "s");
-  std::string names;
-  for (std::size_t i = 0; i < lost.size() && i < kNamed; ++i) names += (i == 0 ? "" : ", ") + lost[i];
-  if (lost.size() > kNamed) names += ", ..";
-  question.text = "An edit takes the place of what was undone" + (names.empty() ? std::string() : ": " + names) +
-                  ". Redo, or the tab History, brings it back as long as nothing is edited." +
-                  (held_ ? "" : " After giving it up, make the edit again.");
-  question.choices = {{Reply::discard, "Give up", display::letter('G'), "G"}, {Reply::cancel, "Keep them", display::Key::escape, "Esc"}};
-  context_.trace.line(fmt::format("asks give up {}", lost.size()));
+      lost.empty() ? "Set the newer states aside?" : fmt::format("Set {} newer state{} aside?", lost.size(), lost.size() == 1 ? "" : "s");
+  question.text = "An edit takes the place of what was undone" + (lost.empty() ? std::string() : ": " + some_of(lost)) +
+                  ". It is kept as a branch, which the tab History lists." + (held_ ? "" : " Then make the edit again.");
+  question.choices = {{Reply::discard, "Go on", display::letter('G'), "G"}, {Reply::cancel, "Don't edit", display::Key::escape, "Esc"}};
+  context_.trace.line(fmt::format("asks set aside {}", lost.size()));
   ++context_.changes;
 }
 

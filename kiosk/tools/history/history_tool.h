@@ -1,4 +1,4 @@
-// Lists the states that undo and redo move among, goes to any of them, and asks before an edit gives up the newer ones.
+// Lists the states that undo and redo move among, goes to any of them, and asks before an edit sets the newer ones aside.
 #pragma once
 
 #include <cstdint>

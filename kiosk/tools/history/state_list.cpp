@@ -20,6 +20,41 @@ std::string words_of_maker(std::string_view made_by) {
   return words;
 }
 
+namespace {
+
+/// A line, and another that leaves it.
+void draw_fork(ImDrawList& list, ImVec2 at, float size) {
+  const float width = std::max(1.0F, size * 0.09F), x = at.x + size * 0.35F;
+  list.AddLine(ImVec2(x, at.y), ImVec2(x, at.y + size), panels::kFaintInk, width);
+  list.AddLine(ImVec2(x, at.y + size * 0.65F), ImVec2(at.x + size * 0.75F, at.y + size * 0.2F), panels::kFaintInk, width);
+}
+
+/// Returns the newest state of the branch that was clicked.
+std::optional<std::uint64_t> branch_rows(const std::vector<BranchRow>& branches, float height, float width, panels::PanelLayout& layout) {
+  std::optional<std::uint64_t> clicked;
+  for (const BranchRow& row : branches) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    ImGui::PushID(row.words.c_str());
+    ImGui::PushID(static_cast<int>(row.number));
+    if (ImGui::InvisibleButton("branch", ImVec2(width, height))) clicked = row.generation;
+    ImGui::PopID();
+    ImGui::PopID();
+    panels::note_item(layout, fmt::format("branch {}", row.number), row.words + ": " + row.states);
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    if (ImGui::IsItemHovered()) {
+      list.AddRectFilled(at, ImVec2(at.x + width, at.y + height), 0x18ffffffU, 2);
+      ImGui::SetTooltip("go there: %s", row.states.c_str());
+    }
+    const float line = ImGui::GetFontSize(), top = at.y + std::floor((height - line) / 2);
+    draw_fork(list, ImVec2(at.x, top), line);
+    const std::string words = fmt::format("Branch {}: {}", row.number, row.words);
+    list.AddText(ImVec2(at.x + line * 1.2F, top), panels::kInk, words.c_str());
+  }
+  return clicked;
+}
+
+}  // namespace
+
 std::optional<std::uint64_t> state_list(const StateFacts& facts, bool follow, panels::PanelLayout& layout) {
   std::optional<std::uint64_t> clicked;
   ImGui::BeginChild("states");
@@ -47,6 +82,7 @@ std::optional<std::uint64_t> state_list(const StateFacts& facts, bool follow, pa
       // What only selects steps back by place; what is undone, by colour.
       list.AddText(ImVec2(at.x + line * (row.selects ? 2 : 1.2F), top), newer ? panels::kFaintInk : panels::kInk, row.words.c_str());
     }
+  if (const auto newest = branch_rows(facts.branches, height, width, layout)) clicked = newest;
   ImGui::PopStyleVar();
   ImGui::EndChild();
   return clicked;

@@ -188,6 +188,54 @@ TEST_F(Keeping, any_state_can_be_gone_to_across_a_save_and_a_restart_knows_it) {
   EXPECT_EQ(height(second, 1313), expected);
 }
 
+TEST_F(Keeping, what_an_edit_gives_up_is_a_branch_after_a_restart_too) {
+  const fs::path deck = folder_.sheet();
+  std::vector<double> heights;
+  {
+    DocumentKeeper first = keeper();
+    ASSERT_TRUE(first.open(request(deck), {}));
+    for (int i = 0; i < 3; ++i) ASSERT_TRUE(first.edit(move_edit(1313, 0.25 * (i + 1))));
+    heights.push_back(height(first, 1313));
+    ASSERT_TRUE(first.go_to(1));
+    ASSERT_TRUE(first.edit(move_edit(1313, 8)));  // gives up 2 and 3
+    heights.push_back(height(first, 1313));
+    const Result<EditReport> report = first.go_to(3);
+    ASSERT_TRUE(report) << report.error().text();
+    EXPECT_EQ(report->notes, std::vector<std::string>{"undid 1 step, did again: 2 steps"});
+    EXPECT_EQ(report->nodes_moved, 1U);
+    EXPECT_EQ(height(first, 1313), heights[0]);
+  }  // as if killed
+  DocumentKeeper second = keeper();
+  ASSERT_TRUE(second.reopen({}));
+  EXPECT_EQ(height(second, 1313), heights[0]);
+  ASSERT_EQ(second.document().branches.size(), 1U);
+  ASSERT_TRUE(second.go_to(4));
+  EXPECT_EQ(height(second, 1313), heights[1]);
+  ASSERT_TRUE(second.go_to(3));
+  EXPECT_EQ(height(second, 1313), heights[0]);
+}
+
+TEST_F(Keeping, a_branch_from_before_a_save_is_gone_to_and_a_restart_knows_it) {
+  const fs::path deck = folder_.sheet();
+  double lifted = 0;
+  {
+    DocumentKeeper first = keeper();
+    ASSERT_TRUE(first.open(request(deck), {}));
+    for (int i = 0; i < 3; ++i) ASSERT_TRUE(first.edit(move_edit(1313, 0.25 * (i + 1))));
+    lifted = height(first, 1313);
+    ASSERT_TRUE(first.go_to(1));
+    ASSERT_TRUE(first.edit(move_edit(1313, 8)));
+    ASSERT_TRUE(first.save(std::nullopt, {}));
+    ASSERT_TRUE(first.edit(move_edit(1314, 8)));
+    ASSERT_TRUE(first.go_to(3));
+    EXPECT_EQ(height(first, 1313), lifted);
+    EXPECT_EQ(first.document().branches.size(), 1U) << "with the saved state";
+  }
+  DocumentKeeper second = keeper();
+  ASSERT_TRUE(second.reopen({}));
+  EXPECT_EQ(height(second, 1313), lifted);
+}
+
 TEST_F(Keeping, a_save_that_rounded_writes_nothing_the_second_time) {
   const fs::path deck = folder_.sheet();
   DocumentKeeper first = keeper();

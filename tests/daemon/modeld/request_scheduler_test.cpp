@@ -396,6 +396,17 @@ TEST_F(RequestSchedulerTest, goes_to_any_state_in_one_request_and_lists_them) {
   EXPECT_EQ(now.generations.size(), 4u) << "the newer ones can be redone";
   EXPECT_EQ(ask<ipc::Edited>(kOne, ipc::GoTo{all.generation}).report.edit, "redo");
   EXPECT_EQ(height(), before + 1.5);
+  ask<ipc::Edited>(kOne, ipc::GoTo{all.generations[1].number});
+  ask<ipc::Edited>(kOne, ipc::ApplyEdit{up});
+  const auto left = ask<ipc::History>(kOne, ipc::GetHistory{});
+  ASSERT_EQ(left.branches.size(), 1u);
+  EXPECT_EQ(left.branches[0].number, 1u);
+  EXPECT_EQ(left.branches[0].fork, all.generations[1].number);
+  ASSERT_EQ(left.branches[0].generations.size(), 2u);
+  EXPECT_EQ(left.branches[0].generations[1].number, all.generation);
+  EXPECT_EQ(left.branches[0].generations[1].made_by, "translate");
+  ask<ipc::Edited>(kOne, ipc::GoTo{all.generation});
+  EXPECT_EQ(height(), before + 1.5) << "of the branch";
   EXPECT_EQ(refusal(kOne, ipc::GoTo{12345}), "the history has no state 12345 any more");
   ask<ipc::Done>(kOne, ipc::Close{true});
   EXPECT_EQ(refusal(kOne, ipc::GoTo{all.generation}), "no document is open");

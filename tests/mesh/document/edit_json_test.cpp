@@ -47,6 +47,7 @@ TEST(EditJson, every_edit_reads_its_example) {
           R"({"edit":"translate","by":[0,0,1],"symmetry":{"point":[0,1,0],"normal":[0,1,0]}})",
           R"({"edit":"undo"})",
           R"({"edit":"redo"})",
+          R"({"edit":"branch","number":3})",
       }) {
     const Result<Edit> edit = parse_edit(text);
     ASSERT_TRUE(edit) << text << ": " << edit.error().text();

@@ -41,7 +41,7 @@ TEST(EditKinds, groups_say_what_an_edit_changes) {
   EXPECT_THAT(names_of(EditGroup::shaping), ElementsAre("lift", "move", "rotate", "slide", "translate"));
   EXPECT_THAT(names_of(EditGroup::mending), ElementsAre("collapse", "merge", "relax", "repair", "split", "swap"));
   EXPECT_THAT(names_of(EditGroup::contact), ElementsAre("separate"));
-  EXPECT_THAT(names_of(EditGroup::step), ElementsAre("redo", "undo"));
+  EXPECT_THAT(names_of(EditGroup::step), ElementsAre("branch", "redo", "undo"));
 }
 
 TEST(EditKinds, the_shaping_ones_have_a_displacement_that_can_be_set) {

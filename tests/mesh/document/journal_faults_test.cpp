@@ -377,6 +377,7 @@ TEST(JournalOfAnother, a_record_that_does_not_fit_names_its_edit_and_its_line) {
       {Prepared::Step::push, "Ag==", "its delta doesn't fit the model"},
       {Prepared::Step::undo, "", "there is nothing to undo"},
       {Prepared::Step::redo, "", "there is nothing to redo"},
+      {Prepared::Step::branch, "", "no branch 0 leaves from there"},
   };
   const Session session({kSession[0]});
   const std::string good = content_of(session.path);
