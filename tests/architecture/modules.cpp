@@ -28,6 +28,7 @@ const std::vector<Module>& modules() {
       {"mesh/deck", {"mesh/deck/editing", "mesh/deck/sample"}},
       {"mesh/spatial", {"mesh/model"}},
       {"mesh/field", {"mesh/spatial"}},
+      {"mesh/lod", {"mesh/spatial"}},
       {"mesh/quality", {"mesh/model"}},
       {"mesh/connections", {"mesh/quality", "mesh/spatial"}},
       {"mesh/contact", {"mesh/connections"}},
