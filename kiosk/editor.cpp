@@ -105,6 +105,14 @@ Result<void> Editor::follow() {
   return {};
 }
 
+Result<void> Editor::make_levels() {
+  render::Renderer& renderer = context_.renderer;
+  auto made = levels_.turn(context_.clock.now_ns(), renderer.shared_model(), !renderer.levels_are_current());
+  if (!made) return {};
+  context_.trace.line("levels " + std::to_string(made->levels.clusters.size()) + " clusters");
+  return renderer.set_levels(std::move(made));
+}
+
 /// The newest state becomes the one that is shown.
 void Editor::take_newest() {
   toolkit::ShownModel& shown = context_.shown;

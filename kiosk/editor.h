@@ -9,6 +9,7 @@
 
 #include "base/clock.h"
 #include "kiosk/display/window.h"
+#include "kiosk/levels_worker.h"
 #include "kiosk/link/model_link.h"
 #include "kiosk/notices/notices.h"
 #include "kiosk/notices/trace.h"
@@ -47,6 +48,10 @@ class Editor {
   void set_panel(const render::PanelPlace& panel);
   /// Follows the model server: its generation, its drag, its notices. Errors: a model too large for the GPU.
   Result<void> follow();
+  /// Has levels of detail made of what is shown, and takes them over. Call it in each turn of the loop. Errors: no graphics memory.
+  Result<void> make_levels();
+  /// When make_levels must be called at the latest; nothing: there is nothing to do.
+  std::optional<std::int64_t> next_levels_ns() const { return levels_.next_ns(context_.clock.now_ns()); }
 
   input::Under under(const input::Pixel& pixel) const { return tools_.under(pixel); }  ///< panels don't count
   void gesture(const input::Gesture& gesture);
@@ -89,6 +94,7 @@ class Editor {
   notices::Notices notices_;
   toolkit::ToolSet tools_;
   toolkit::ToolContext context_;
+  LevelsWorker levels_;
   std::uint64_t link_changes_ = 0;  ///< followed so far
   input::Pixel pointer_ = input::Pixel::Zero();
   // The line that tells what the last edit did: it goes when the pointer, which was there as it came, points at something else.

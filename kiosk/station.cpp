@@ -59,6 +59,7 @@ Result<void> Station::turn() {
   pen.turn();
   devices.turn();
   if (Result<void> followed = editor.follow(); !followed) return followed;
+  if (Result<void> made = editor.make_levels(); !made) return made;
   follow_profile();
   return {};
 }

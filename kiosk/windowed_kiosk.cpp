@@ -23,7 +23,6 @@ constexpr std::int64_t kWheelRestNs = 250'000'000;   ///< the wheel counts as st
 constexpr std::int64_t kPointerRestNs = 60'000'000;  ///< the pointer rests this long after its last move
 constexpr std::int64_t kWordNs = 220'000'000;        ///< letters of a word come faster than that
 constexpr std::int64_t kForEverNs = -1;
-constexpr std::size_t kManyShells = 200'000;            ///< a picture of more at rest may be too slow while the hand moves something
 constexpr std::int64_t kDaemonTriesNs = 1'000'000'000;  ///< between two attempts to reach a missing device daemon, or the pen's process
 constexpr std::int64_t kPenLookNs = 8'000'000;          ///< between two looks at a pen, which moves without a message
 
@@ -252,7 +251,7 @@ Result<void> WindowedKiosk::show() {
   dirty_ = edge_fed_ = false;
   window_.show_pointer(!station_.editor.profile().stereo());
   const auto& shown = station_.editor.context().shown.snapshot;
-  shown_moving_ = moving() && shown && shown->shell_count() > kManyShells;
+  shown_moving_ = moving() && shown && shown->shell_count() > LevelsWorker::kFewestShells;
   const std::optional<input::Pixel> pointer = draws_pointer() ? gestures_.position() : std::nullopt;
   if (Result<void> drawn = station_.screen.draw(0, pointer, shown_moving_); !drawn) return drawn;
   if (station_.eyes.watches()) window_.finish();
@@ -289,6 +288,7 @@ std::int64_t WindowedKiosk::patience_ns() const {
   if (stale() || station_.eyes.watches()) patience = shorter(patience, std::max<std::int64_t>(0, station_.eyes.next_look_ns() - now));
   if (station_.screen.gui().wants_keys()) patience = shorter(patience, kCaretBlinkNs);
   if (const auto report = watch_.next_ns()) patience = shorter(patience, std::max<std::int64_t>(0, *report - now));
+  if (const auto levels = station_.editor.next_levels_ns()) patience = shorter(patience, std::max<std::int64_t>(0, *levels - now));
   if (held_) patience = shorter(patience, std::max<std::int64_t>(0, held_->fires_ns - now));
   if (rests_ns_ && !gestures_.dragging()) patience = shorter(patience, std::max<std::int64_t>(0, *rests_ns_ - now));
   if (shown_moving_ && !gestures_.dragging()) patience = shorter(patience, std::max<std::int64_t>(0, wheel_rest_ns_ - now));

@@ -70,6 +70,10 @@ Result<void> ModelLayer::set_model(std::shared_ptr<const ModelSource> source) {
     table_.reset();
     return fail(changes.error());
   }
+  if (const auto done = shell_draws_.update(*table_, textures_, *changes); !done) {
+    table_.reset();
+    return done;
+  }
   if (changes->topology || changes->visibility) visible_nodes_.reset();
   forget_visible_nodes();
   chunks_uploaded_ += changes->uploaded;
@@ -90,6 +94,10 @@ Result<void> ModelLayer::set_model(std::shared_ptr<const ModelSource> source) {
   const bool visible_nodes_changed = !visible_nodes_ && table_->any_hidden();
   return selected_.update(*table_, textures_.origin(), changes->topology || changes->visibility || visible_nodes_changed,
                           changes->moved_chunks, [this]() -> const std::vector<std::uint8_t>& { return visible_nodes(); });
+}
+
+Result<void> ModelLayer::set_levels(std::shared_ptr<const MadeLevels> made) {
+  return table_ ? shell_draws_.set_levels(std::move(made), *table_, textures_) : Result<void>();
 }
 
 Result<void> ModelLayer::update_line_elements(bool changed) {

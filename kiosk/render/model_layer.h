@@ -13,6 +13,7 @@
 #include "kiosk/render/part_looks.h"
 #include "kiosk/render/preview_patch.h"
 #include "kiosk/render/selection_rows.h"
+#include "kiosk/render/shell_draws.h"
 
 namespace prismesh::kiosk::render {
 
@@ -30,6 +31,10 @@ class ModelLayer {
 
   /// Takes over a model; null: none. Errors: too large for the GPU, no graphics memory.
   Result<void> set_model(std::shared_ptr<const ModelSource> source);
+  /// Takes over levels of detail; ignored unless they were made of this model's shells. Errors: no graphics memory.
+  Result<void> set_levels(std::shared_ptr<const MadeLevels> made);
+  ShellDraws& shell_draws() { return shell_draws_; }
+  const ShellDraws& shell_draws() const { return shell_draws_; }
   bool empty() const { return !table_; }
   const ModelTable& table() const { return *table_; }
   const ModelTextures& textures() const { return textures_; }
@@ -103,6 +108,7 @@ class ModelLayer {
 
   std::optional<ModelTable> table_;
   ModelTextures textures_;
+  ShellDraws shell_draws_;
   Outline outline_;
   GlyphList glyph_list_;
   LineSet borders_, creases_, line_elements_;

@@ -34,6 +34,8 @@ ModelTable::ModelTable(std::shared_ptr<const ModelSource> source)
     line_parts_.push_back(source_->chunk<mesh::PartIndex>(SnapshotArray::line_parts, c));
   for (std::size_t c = 0; c < source_->chunk_count(SnapshotArray::node_marks); ++c)
     node_marks_.push_back(source_->chunk<std::uint8_t>(SnapshotArray::node_marks, c));
+  for (std::size_t c = 0; c < source_->chunk_count(SnapshotArray::shell_marks); ++c)
+    shell_marks_.push_back(source_->chunk<std::uint8_t>(SnapshotArray::shell_marks, c));
   for (std::size_t c = 0; c < source_->chunk_count(SnapshotArray::clusters); ++c)
     for (const ipc::SnapshotCluster& cluster : source_->chunk<ipc::SnapshotCluster>(SnapshotArray::clusters, c))
       if (cluster.shell.value < shell_count_ && cluster.corner < 3) clusters_.push_back(cluster);

@@ -40,6 +40,11 @@ class ModelTable {
   }
   /// The part of a shell's state that it had when the deck was opened.
   mesh::quality::ShellState shell_was(std::size_t shell) const;
+  /// Selected as a whole, not by its nodes.
+  bool shell_selected(std::size_t shell) const {
+    const std::size_t chunk = shell / mesh::kChunkSize, at = shell % mesh::kChunkSize;
+    return chunk < shell_marks_.size() && at < shell_marks_[chunk].size() && (shell_marks_[chunk][at] & mesh::document::kSelected) != 0;
+  }
   mesh::PartIndex shell_part(std::size_t shell) const { return parts_[shell / mesh::kChunkSize][shell % mesh::kChunkSize]; }
   bool shell_visible(std::size_t shell) const { return !part_hidden(shell_part(shell).value); }
   bool part_hidden(std::size_t part) const { return part < hidden_.size() && hidden_[part] != 0; }
@@ -69,6 +74,7 @@ class ModelTable {
   std::vector<const mesh::NodeIndex*> lines_;
   std::vector<std::span<const mesh::PartIndex>> line_parts_;
   std::vector<std::span<const std::uint8_t>> node_marks_;
+  std::vector<std::span<const std::uint8_t>> shell_marks_;
   std::vector<std::uint8_t> hidden_;
   bool any_hidden_ = false;
   std::vector<ipc::SnapshotCluster> clusters_;

@@ -1,6 +1,7 @@
 #include "kiosk/render/renderer.h"
 
 #include <algorithm>
+#include <string_view>
 #include <tuple>
 #include <utility>
 
@@ -18,6 +19,9 @@ namespace prismesh::kiosk::render {
 namespace {
 
 constexpr double kMinViewerMm = 20;
+/// By which an image takes some 25 ms on two cores, and few milliseconds on a graphics card.
+constexpr std::size_t kMovingTrianglesInSoftware = 60'000;
+constexpr std::size_t kMovingTriangles = 4'000'000;
 constexpr double kHalfGapPixels = 4;  ///< half the width of the ground between two views
 
 /// The input from which the scene in the eyes' images was drawn.
@@ -119,7 +123,14 @@ Result<std::unique_ptr<Renderer>> Renderer::create(const RendererOptions& option
   if (const auto context = gl::check_context(); !context) return fail(context.error());
   Result<Shaders> shaders = Shaders::link();
   if (!shaders) return fail(shaders.error());
-  return std::unique_ptr<Renderer>(new Renderer(std::make_unique<Impl>(options, std::move(*shaders))));
+  RendererOptions wanted = options;
+  if (wanted.moving_triangles == 0) {
+    const auto* name = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+    const bool software = name != nullptr && (std::string_view(name).find("llvmpipe") != std::string_view::npos ||
+                                              std::string_view(name).find("softpipe") != std::string_view::npos);
+    wanted.moving_triangles = software ? kMovingTrianglesInSoftware : kMovingTriangles;
+  }
+  return std::unique_ptr<Renderer>(new Renderer(std::make_unique<Impl>(wanted, std::move(*shaders))));
 }
 
 Result<void> Renderer::set_model(std::shared_ptr<const ModelSource> model) {
@@ -128,6 +139,12 @@ Result<void> Renderer::set_model(std::shared_ptr<const ModelSource> model) {
   ++impl_->scene_version;
   impl_->figures.chunks_uploaded = impl_->layer.chunks_uploaded();
   return done;
+}
+
+Result<void> Renderer::set_levels(std::shared_ptr<const MadeLevels> made) { return impl_->layer.set_levels(std::move(made)); }
+
+bool Renderer::levels_are_current() const {
+  return impl_->layer.empty() || (impl_->layer.shell_draws().has_levels() && !impl_->layer.shell_draws().is_out_of_date());
 }
 
 Result<void> Renderer::set_other(std::shared_ptr<const ModelSource> model) {
@@ -153,6 +170,8 @@ Result<void> Renderer::set_part_paints(std::span<const PartPaint> paints) {
 }
 
 const ModelSource* Renderer::model() const { return impl_->model.get(); }
+
+const std::shared_ptr<const ModelSource>& Renderer::shared_model() const { return impl_->model; }
 
 stereo::Box Renderer::bounds() const { return impl_->layer.shown_box(); }
 
@@ -247,7 +266,8 @@ Result<void> Renderer::Impl::draw_scene(Images& images, const Picture& picture, 
 /// Draws the model over the whole picture, or two views side by side.
 void Renderer::Impl::draw_views(const Picture& picture, const EyeView& eye, int width) {
   scene.begin(eye);
-  if (!picture.two_views) return scene.draw(picture, {layer, fields[0], picture.field[0], paint}, eye, options.glyph_cap);
+  if (!picture.two_views)
+    return scene.draw(picture, {layer, fields[0], picture.field[0], paint}, eye, {options.glyph_cap, options.moving_triangles});
   for (const Pane pane : {Pane::model, Pane::other}) {
     const bool right = (pane == Pane::model) == picture.two_views->model_on_right;
     Picture half = picture;
@@ -264,7 +284,7 @@ void Renderer::Impl::draw_views(const Picture& picture, const EyeView& eye, int 
     scene.begin_pane(eye, right ? middle + kHalfGapPixels : 0, right ? width : middle - kHalfGapPixels);
     const auto at = static_cast<std::size_t>(pane);
     ModelLayer& shown = pane == Pane::model ? layer : other_layer;
-    scene.draw(half, {shown, fields[at], picture.field[at], paint}, eye, options.glyph_cap);
+    scene.draw(half, {shown, fields[at], picture.field[at], paint}, eye, {options.glyph_cap, options.moving_triangles});
   }
   glDisable(GL_STENCIL_TEST);
 }
@@ -344,6 +364,8 @@ mesh::NodeSet Renderer::nodes_in(const stereo::Aim& aim, const PixelRect& rect, 
 
 Renderer::Figures Renderer::figures() const {
   Figures figures = impl_->figures;
+  figures.moving_triangles = impl_->layer.shell_draws().chosen_triangles();
+  figures.moving_pixels = impl_->layer.shell_draws().chosen_pixels();
   figures.bytes_uploaded = impl_->layer.bytes_uploaded() + impl_->other_layer.bytes_uploaded();
   for (const FieldColours& field : impl_->fields) figures.bytes_uploaded += field.bytes_uploaded();
   return figures;

@@ -14,12 +14,15 @@
 #include "kiosk/render/model_source.h"
 #include "kiosk/render/part_paint.h"
 #include "kiosk/render/picture.h"
+#include "kiosk/render/shell_draws.h"
 
 namespace prismesh::kiosk::render {
 
 struct RendererOptions {
   int samples = 4;                ///< 4 or 1 (no multisampling)
   std::size_t glyph_cap = 20000;  ///< max number of quality glyphs drawn, failures first
+  /// Of a moving picture's image, at most so many where levels of detail allow it; 0: by whether a graphics card draws.
+  std::size_t moving_triangles = 0;
 };
 
 /// Number of glyphs drawn and left out, for a message beside the picture.
@@ -39,7 +42,13 @@ class Renderer {
   /// Shows a model. Uploads only the chunks whose versions differ. Null: an empty screen. Errors: too large for the GPU, no graphics
   /// memory.
   Result<void> set_model(std::shared_ptr<const ModelSource> model);
+  /// Takes over levels of detail: moving pictures show coarse triangles for shells that are small in them. Ignored unless they were made of
+  /// the shells that are shown; dropped when the shells are others. Errors: no graphics memory.
+  Result<void> set_levels(std::shared_ptr<const MadeLevels> made);
+  /// Whether moving pictures have levels of detail, of the places where the nodes are now.
+  bool levels_are_current() const;
   const ModelSource* model() const;
+  const std::shared_ptr<const ModelSource>& shared_model() const;
   /// Box around the nodes of visible shells and line elements, deck coordinates, for View::bounds; changes with each set_model. Time is
   /// proportional to the number of chunks and line elements.
   stereo::Box bounds() const;
@@ -88,7 +97,9 @@ class Renderer {
     std::size_t chunks_uploaded = 0;  ///< over the renderer's life
     std::size_t bytes_uploaded = 0;   ///< of the model and of previews, over the renderer's life
     std::size_t item_buffers_drawn = 0;
-    std::size_t scenes_drawn = 0;  ///< pictures for which the model was drawn
+    std::size_t scenes_drawn = 0;      ///< pictures for which the model was drawn
+    std::size_t moving_triangles = 0;  ///< of the last moving picture's image with levels of detail
+    double moving_pixels = 0;          ///< how far they may be off
   };
   Figures figures() const;
 

@@ -21,6 +21,7 @@ constexpr float kHemWidth = 1.1F;
 /// A shell with a smaller radius on the screen is enlarged to this one for its glyph.
 constexpr RadiusLimits kGlyphRadius{9.0F, 5.0F, 0.7F};
 constexpr float kTransparentOpacity = 0.3F;
+constexpr double kNearestMm = 50;        ///< what is nearer to the eye counts as at this distance, for its level of detail
 constexpr double kLinesTowardEye = 1.3;  ///< pixels: depth offset of lines from the surface they lie on
 
 }  // namespace
@@ -70,7 +71,7 @@ void ScenePass::begin_pane(const EyeView& eye, double from, double to) const {
   glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
 }
 
-void ScenePass::draw(const Picture& picture, const ViewContent& content, const EyeView& eye, std::size_t glyph_cap) const {
+void ScenePass::draw(const Picture& picture, const ViewContent& content, const EyeView& eye, const DrawCaps& caps) const {
   ModelLayer& model = content.model;
   const Frame frame(eye, picture, model);
   glEnable(GL_DEPTH_TEST);
@@ -79,7 +80,7 @@ void ScenePass::draw(const Picture& picture, const ViewContent& content, const E
     model.textures().positions().bind(unit::kPositions);
     model.textures().connectivity().bind(unit::kConnectivity);
     model.textures().surface().bind(unit::kSurface);
-    draw_shells(picture, content, frame);
+    draw_shells(picture, content, caps.moving_triangles, frame);
     if (picture.shadows) shadows_.draw(model, frame);
     contact_.draw(model, frame);
     model.textures().positions().bind(unit::kPositions);
@@ -89,7 +90,7 @@ void ScenePass::draw(const Picture& picture, const ViewContent& content, const E
     model.textures().positions().bind(unit::kPositions);
     model.textures().connectivity().bind(unit::kConnectivity);
     if (picture.selected_nodes) nodes_.draw(model, frame);
-    if (picture.quality_glyphs || picture.marked) draw_glyphs(picture, model, glyph_cap, frame);
+    if (picture.quality_glyphs || picture.marked) draw_glyphs(picture, model, caps.glyphs, frame);
   }
   const HandleSpace space{picture.view, eye.mm_per_pixel, eye.viewer_mm, model.shown_box()};
   if (!picture.followed_edges.empty()) handle_.draw({followed_edges_piece(picture.followed_edges, space)}, eye);
@@ -110,64 +111,61 @@ void ScenePass::draw_ground(const EyeView& eye) const {
   glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
-void ScenePass::draw_shells(const Picture& picture, const ViewContent& content, const Frame& frame) const {
+void ScenePass::set_shell_uniforms(const gl::Program& program, const Picture& picture, const ViewContent& content,
+                                   const Frame& frame) const {
   const FieldLook& look = content.look;
-  frame.set(shaders_.shells);
+  frame.set(program);
   const auto& palette = part_colours();
-  for (std::size_t i = 0; i < palette.size(); ++i) shaders_.shells.set(("palette[" + std::to_string(i) + "]").c_str(), palette[i]);
+  for (std::size_t i = 0; i < palette.size(); ++i) program.set(("palette[" + std::to_string(i) + "]").c_str(), palette[i]);
   const auto& grades = grade_colours();
-  for (std::size_t i = 0; i < grades.size(); ++i) shaders_.shells.set(("grades[" + std::to_string(i) + "]").c_str(), grades[i]);
-  shaders_.shells.set("by_grade", picture.colour == ColourMode::quality ? 1 : picture.colour == ColourMode::part_states ? 2 : 0);
+  for (std::size_t i = 0; i < grades.size(); ++i) program.set(("grades[" + std::to_string(i) + "]").c_str(), grades[i]);
+  program.set("by_grade", picture.colour == ColourMode::quality ? 1 : picture.colour == ColourMode::part_states ? 2 : 0);
   const PartLooks& looks = content.model.part_looks();
   looks.texture().bind(unit::kPartLooks);
-  shaders_.shells.set("part_looks", static_cast<int>(unit::kPartLooks));
-  shaders_.shells.set("part_count", static_cast<int>(looks.count()));
+  program.set("part_looks", static_cast<int>(unit::kPartLooks));
+  program.set("part_count", static_cast<int>(looks.count()));
   const bool coloured = picture.colour == ColourMode::field && look.on;
   content.field.bind(unit::kField, unit::kColourMap, look);
-  shaders_.shells.set("field", static_cast<int>(unit::kField));
-  shaders_.shells.set("colour_map", static_cast<int>(unit::kColourMap));
-  shaders_.shells.set("field_kind", coloured ? content.field.kind_for(content.model.table()) : 0);
-  shaders_.shells.set("limits", Eigen::Vector3f(static_cast<float>(look.clear), static_cast<float>(1 / (look.full - look.clear)),
-                                                static_cast<float>(look.bands)));
-  shaders_.shells.set("eye_in_model", frame.eye_in_model);
-  shaders_.shells.set("edge_strength", picture.element_edges ? 0.42F : 0.0F);
-  shaders_.shells.set("opacity", 1.0F);
-  content.paint.use(shaders_.shells, false);
-  draw_chunks(content.model, frame.clip_from_deck);
-  if (content.paint.any_transparent()) draw_transparent(content, frame);
+  program.set("field", static_cast<int>(unit::kField));
+  program.set("colour_map", static_cast<int>(unit::kColourMap));
+  program.set("field_kind", coloured ? content.field.kind_for(content.model.table()) : 0);
+  program.set("limits", Eigen::Vector3f(static_cast<float>(look.clear), static_cast<float>(1 / (look.full - look.clear)),
+                                        static_cast<float>(look.bands)));
+  program.set("eye_in_model", frame.eye_in_model);
+  program.set("edge_strength", picture.element_edges ? 0.42F : 0.0F);
+  program.set("opacity", 1.0F);
 }
 
-/// The parts that are seen through, over the others. They don't hide each other, so their order shows in the mixture only.
-void ScenePass::draw_transparent(const ViewContent& content, const Frame& frame) const {
-  shaders_.shells.set("opacity", kTransparentOpacity);
-  content.paint.use(shaders_.shells, true);
+/// Parts that are seen through come last, over the others. They don't hide each other, so their order shows in the mixture only.
+void ScenePass::draw_opaque_and_transparent(const gl::Program& program, const ViewContent& content,
+                                            const std::function<void()>& draw) const {
+  content.paint.use(program, false);
+  draw();
+  if (!content.paint.any_transparent()) return;
+  program.set("opacity", kTransparentOpacity);
+  content.paint.use(program, true);
   blend_by_alpha();
   glDepthMask(GL_FALSE);
-  draw_chunks(content.model, frame.clip_from_deck);
+  draw();
   glDepthMask(GL_TRUE);
   glDisable(GL_BLEND);
 }
 
-void ScenePass::draw_chunks(const ModelLayer& model, const Eigen::Matrix4d& clip_from_deck) const {
-  glBindVertexArray(no_attributes_.get());
-  Eigen::Matrix4d clip_from_model = clip_from_deck;
-  clip_from_model.col(3) += clip_from_deck.leftCols<3>() * model.textures().origin();
-  const auto& chunks = model.textures().shell_chunks();
-  std::size_t first = 0, last = 0;  // visible neighbours are drawn in one call
-  const auto flush = [&] {
-    const std::size_t end = std::min(last * mesh::kChunkSize, model.textures().shell_count());
-    const std::size_t begin = first * mesh::kChunkSize;
-    if (end > begin) glDrawArrays(GL_TRIANGLES, static_cast<GLint>(begin * 6), static_cast<GLsizei>((end - begin) * 6));
-  };
-  for (std::size_t c = 0; c < chunks.size(); ++c) {
-    if (!chunks[c].shown || !may_be_seen(chunks[c].box, clip_from_model)) continue;
-    if (c != last) {
-      flush();
-      first = c;
-    }
-    last = c + 1;
-  }
-  flush();
+void ScenePass::draw_shells(const Picture& picture, const ViewContent& content, std::size_t moving_triangles, const Frame& frame) const {
+  ShellDraws& draws = content.model.shell_draws();
+  set_shell_uniforms(shaders_.shells, picture, content, frame);
+  const Eigen::Matrix4d clip_from_model = frame.clip_from_model.cast<double>();
+  if (!picture.moving || !draws.has_levels())
+    return draw_opaque_and_transparent(shaders_.shells, content, [&] { draws.draw_all(clip_from_model); });
+  // The same for both eyes: from between them.
+  const double pixels = picture.between_eyes_mm.z() / frame.eye.mm_per_pixel;
+  draws.choose({stereo::to_deck(picture.view, picture.between_eyes_mm), pixels, kNearestMm / picture.view.mm_per_unit}, clip_from_model,
+               moving_triangles);
+  draw_opaque_and_transparent(shaders_.shells, content, [&] { draws.draw_chosen_shells(); });
+  set_shell_uniforms(shaders_.coarse, picture, content, frame);
+  draws.coarse().bind(unit::kCoarse);
+  shaders_.coarse.set("coarse", static_cast<int>(unit::kCoarse));
+  draw_opaque_and_transparent(shaders_.coarse, content, [&] { draws.draw_chosen_coarse(); });
 }
 
 void ScenePass::draw_items(const ModelLayer& model, const PaintTexture& paint, const Eigen::Matrix4d& clip_from_deck) const {
@@ -194,7 +192,7 @@ void ScenePass::draw_items(const ModelLayer& model, const PaintTexture& paint, c
   shaders_.items.set("connectivity", static_cast<int>(unit::kConnectivity));
   shaders_.items.set("surface", static_cast<int>(unit::kSurface));
   paint.use(shaders_.items, false);
-  draw_chunks(model, clip_from_deck);
+  model.shell_draws().draw_all(clip_from_model);
   glDisable(GL_DEPTH_TEST);
 }
 

@@ -1,6 +1,8 @@
 // Draws one eye's image of the model with its lines, selected nodes, glyphs, shadows and handle.
 #pragma once
 
+#include <functional>
+
 #include "kiosk/render/contact_pass.h"
 #include "kiosk/render/frame.h"
 #include "kiosk/render/handle_pass.h"
@@ -19,6 +21,12 @@ struct ViewContent {
   const PaintTexture& paint;  ///< of the model's parts
 };
 
+/// At most so many.
+struct DrawCaps {
+  std::size_t glyphs = 0;
+  std::size_t moving_triangles = 0;  ///< of shells, in a moving picture with levels of detail
+};
+
 class ScenePass {
  public:
   explicit ScenePass(const Shaders& shaders);
@@ -30,8 +38,7 @@ class ScenePass {
   /// Limits later draws to the picture's columns from `from` to `to` (pixels), until the next call. Clears the depth there, so that
   /// earlier draws hide nothing.
   void begin_pane(const EyeView& eye, double from, double to) const;
-  /// Draws a view; at most `glyph_cap` quality glyphs.
-  void draw(const Picture& picture, const ViewContent& content, const EyeView& eye, std::size_t glyph_cap) const;
+  void draw(const Picture& picture, const ViewContent& content, const EyeView& eye, const DrawCaps& caps) const;
   /// Draws shell index + 1 into a bound R32UI framebuffer; 0: no shell. Transparent parts aren't drawn.
   void draw_items(const ModelLayer& model, const PaintTexture& paint, const Eigen::Matrix4d& clip_from_deck) const;
 
@@ -42,14 +49,14 @@ class ScenePass {
     float min_alpha = 1;  ///< of lines a few pixels long; longer ones become opaque
   };
   void draw_ground(const EyeView& eye) const;
-  void draw_shells(const Picture& picture, const ViewContent& content, const Frame& frame) const;
-  void draw_transparent(const ViewContent& content, const Frame& frame) const;
+  void draw_shells(const Picture& picture, const ViewContent& content, std::size_t moving_triangles, const Frame& frame) const;
+  void set_shell_uniforms(const gl::Program& program, const Picture& picture, const ViewContent& content, const Frame& frame) const;
+  void draw_opaque_and_transparent(const gl::Program& program, const ViewContent& content, const std::function<void()>& draw) const;
   void draw_lines(const LineSet& lines, const RowTexture& positions, const LineStyle& style, const Frame& frame) const;
   void draw_model_lines(const Picture& picture, const ModelLayer& model, const Frame& frame) const;
   void draw_contact_lines(const ModelLayer& model, const Frame& frame) const;
   void draw_preview(const ModelLayer& model, const Frame& frame) const;
   void draw_glyphs(const Picture& picture, ModelLayer& model, std::size_t cap, const Frame& frame) const;
-  void draw_chunks(const ModelLayer& model, const Eigen::Matrix4d& clip_from_deck) const;
 
   const Shaders& shaders_;
   gl::VertexArray no_attributes_;

@@ -97,9 +97,18 @@ vec3 unpack_normal(uint halves) {
   n.y += n.y >= 0.0 ? -t : t;
   return normalize(n);
 }
+#ifdef COARSE
+uniform usampler2D coarse;
+#endif
 void main() {
-  uint shell = uint(gl_VertexID / 6);
-  int corner = kCorner[gl_VertexID % 6];
+#ifdef COARSE
+  uvec4 row = texelFetch(coarse, texel(uint(gl_VertexID / 3)), 0);
+  uint shell = row.w;
+  int corner = gl_VertexID % 3;
+#else
+  uint shell = uint(gl_VertexID >> 2);
+  int corner = gl_VertexID & 3;
+#endif
   uvec2 word = texelFetch(surface, texel(shell), 0).xy;
   gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
   place = vec2(0.0);
@@ -110,11 +119,20 @@ void main() {
   uint part = word.x >> 9;
   uint paint = paint_of(part);
   if ((word.x & 256u) != 0u || !is_drawn(paint)) return;
+#ifdef COARSE
+  uvec4 nodes = row.xyzz;
+#else
   uvec4 nodes = texelFetch(connectivity, texel(shell), 0);
+#endif
   vec3 at = texelFetch(positions, texel(node_of(nodes, corner)), 0).xyz;
   gl_Position = clip_from_model * vec4(at, 1.0);
   triangle = nodes.z == nodes.w ? 1.0 : 0.0;
+#ifdef COARSE
+  place = vec2(0.5);  // no element edges
+  triangle = 0.0;
+#else
   place = vec2(corner == 1 || (corner == 2 && triangle == 0.0) ? 1.0 : 0.0, corner >= 2 ? 1.0 : 0.0);
+#endif
 
   vec3 normal = unpack_normal(word.y);
   if (dot(normal, eye_in_model - at) < 0.0) normal = -normal;
@@ -195,13 +213,13 @@ void main() { colour = vec4(0.0); }
 const char* const kItemVertex = R"(
 flat out uint item;
 void main() {
-  uint shell = uint(gl_VertexID / 6);
+  uint shell = uint(gl_VertexID >> 2);
   item = shell + 1u;
   gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
   uint word = texelFetch(surface, texel(shell), 0).x;
   if ((word & 256u) != 0u || !is_drawn(paint_of(word >> 9))) return;
   uvec4 nodes = texelFetch(connectivity, texel(shell), 0);
-  gl_Position = clip_from_model * vec4(texelFetch(positions, texel(node_of(nodes, kCorner[gl_VertexID % 6])), 0).xyz, 1.0);
+  gl_Position = clip_from_model * vec4(texelFetch(positions, texel(node_of(nodes, gl_VertexID & 3)), 0).xyz, 1.0);
 }
 )";
 
@@ -275,6 +293,7 @@ Result<Shaders> Shaders::link() {
   const Entry entries[] = {
       {&Shaders::ground, "ground", cover_vertex_shader(), head + kGroundFragment},
       {&Shaders::shells, "shells", shell + kPaint + kShellVertex, head + kShellFragment},
+      {&Shaders::coarse, "coarse triangles", shell + "#define COARSE\n" + kPaint + kShellVertex, head + kShellFragment},
       {&Shaders::items, "items", shell + kPaint + kItemVertex, head + kItemFragment},
       {&Shaders::lines, "lines", pull + kSquareCorner + kLineVertex, head + kLineFragment},
       {&Shaders::nodes, "nodes", pull + kNodeVertex, head + kNodeFragment},

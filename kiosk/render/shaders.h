@@ -21,6 +21,7 @@ inline constexpr unsigned kPartLooks = 7;
 inline constexpr unsigned kField = 8;
 inline constexpr unsigned kColourMap = 9;
 inline constexpr unsigned kPaint = 10;
+inline constexpr unsigned kCoarse = 11;
 }  // namespace unit
 
 /// Version and precision: the start of every shader.
@@ -30,7 +31,8 @@ const std::string& cover_vertex_shader();
 
 struct Shaders {
   gl::Program ground;      ///< the background: one triangle over the whole image
-  gl::Program shells;      ///< six vertices a shell, read from textures
+  gl::Program shells;      ///< four vertices a shell, read from textures
+  gl::Program coarse;      ///< triangles that stand for shells, three vertices each
   gl::Program items;       ///< the same shells; the output is shell index + 1
   gl::Program lines;       ///< six vertices a line, read from textures; any width
   gl::Program nodes;       ///< octahedra, six vertices a node, read from rows of indices

@@ -17,8 +17,9 @@ struct Viewpoint {
 };
 
 /// Appends the indices of the clusters, ascending: together they stand for each shell exactly once, and none is farther from its shells
-/// than `max_pixels` as seen from `from`, where that can be. The same for several viewpoints together: fine enough for each.
-void choose(const Levels& levels, std::span<const Viewpoint> from, double max_pixels, std::vector<std::uint32_t>& clusters);
+/// than `max_pixels` as seen from `from`. `held`: groups that aren't chosen (groups_over); empty: none.
+void choose(const Levels& levels, const std::vector<std::uint8_t>& held, const Viewpoint& from, double max_pixels,
+            std::vector<std::uint32_t>& clusters);
 
 /// How many shells, and triangles of coarse clusters, they have; a quad counts as two triangles.
 std::size_t triangles_of(const Levels& levels, std::span<const std::uint32_t> clusters);

@@ -56,9 +56,8 @@ struct Levels {
 /// cancelled.
 Result<Levels> build_levels(const Model& model, const Progress& progress = {});
 
-/// What is left of the levels when nodes moved (ascending): clusters of shells get their new bounds, and what stood for moved shells isn't
-/// chosen any more until the levels are built anew. `model`: as moved, with its adjacency, of the structure that the levels were built of.
-/// Costs what moved, and a look at each cluster of shells.
-void take_moved(const Model& model, const std::vector<NodeIndex>& moved, Levels& levels);
+/// By group: 1 if it stands for one of these shells (by ShellIndex: not 0). So shells that moved since, or must be seen as they are, can be
+/// kept out of the coarse ones. Costs a look at each shell.
+std::vector<std::uint8_t> groups_over(const Levels& levels, const std::vector<std::uint8_t>& shells);
 
 }  // namespace prismesh::mesh::lod

@@ -71,7 +71,7 @@ const std::vector<Module>& modules() {
       {"kiosk/display/kms", {"kiosk/display", "drivers/settings"}},
       {"kiosk/display/x11", {"kiosk/display"}},
       {"kiosk/stereo", {"ipc/device", "ipc/model"}},
-      {"kiosk/render", {"kiosk/stereo"}},
+      {"kiosk/render", {"kiosk/stereo", "mesh/lod"}},
       {"kiosk/input", {"kiosk/display", "mesh/document"}},
       {"kiosk/notices", {"mesh/deck/data"}},
       {"kiosk/panels", {"kiosk/input", "kiosk/notices"}},

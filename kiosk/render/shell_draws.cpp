@@ -1,0 +1,261 @@
+#include "kiosk/render/shell_draws.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "base/parallel_for.h"
+
+namespace prismesh::kiosk::render {
+
+using ipc::SnapshotArray;
+using mesh::ShellIndex;
+
+namespace {
+
+/// Two triangles of a quad. The last corner of each is 0: its values are those of the whole triangle.
+constexpr std::array<std::uint32_t, 6> kCorners{1, 2, 0, 2, 3, 0};
+constexpr std::size_t kShellsOfRun = 64;
+/// Of selected shells that a moving picture shows as they are; where more are selected, coarse triangles have their colour.
+constexpr std::size_t kMostHeld = 20'000;
+constexpr double kFinest = 1, kCoarsest = 8, kCoarser = 1.35;
+
+void make_indices(gl::VertexArray& array, gl::Buffer& buffer) {
+  array = gl::VertexArray::make();
+  buffer = gl::Buffer::make();
+  glBindVertexArray(array.get());
+  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffer.get());
+  glBindVertexArray(0);
+}
+
+void upload(const gl::VertexArray& array, const std::vector<std::uint32_t>& indices, GLenum use) {
+  glBindVertexArray(array.get());
+  glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(indices.size() * sizeof(std::uint32_t)), indices.data(), use);
+  glBindVertexArray(0);
+}
+
+void append_shell(std::uint32_t shell, std::vector<std::uint32_t>& indices) {
+  for (const std::uint32_t corner : kCorners) indices.push_back(4 * shell + corner);
+}
+
+/// The planes of the view volume: points with a negative product with one of them are outside.
+class ViewVolume {
+ public:
+  explicit ViewVolume(const Eigen::Matrix4d& clip) {
+    for (int axis = 0; axis < 3; ++axis)
+      for (const double sign : {1.0, -1.0}) {
+        Eigen::Vector4d plane = clip.row(3).transpose() + sign * clip.row(axis).transpose();
+        const double length = plane.head<3>().norm();
+        planes_[static_cast<std::size_t>(2 * axis + (sign > 0 ? 0 : 1))] = length > 0 ? Eigen::Vector4d(plane / length) : plane;
+      }
+  }
+  bool may_hold(const mesh::lod::Sphere& sphere) const {
+    return sphere.radius >= 0 && std::all_of(planes_.begin(), planes_.end(), [&](const Eigen::Vector4d& plane) {
+             return plane.head<3>().dot(sphere.centre) + plane.w() >= -sphere.radius;
+           });
+  }
+
+ private:
+  std::array<Eigen::Vector4d, 6> planes_;
+};
+
+}  // namespace
+
+std::vector<std::uint64_t> shell_versions_of(const ModelSource& source) {
+  std::vector<std::uint64_t> versions{source.size(SnapshotArray::positions), source.size(SnapshotArray::shell_nodes)};
+  for (const SnapshotArray array : {SnapshotArray::shell_nodes, SnapshotArray::shell_parts})
+    for (std::size_t c = 0; c < source.chunk_count(array); ++c) versions.push_back(source.chunk_version(array, c));
+  return versions;
+}
+
+ShellDraws::ShellDraws() {
+  make_indices(all_array_, all_indices_);
+  make_indices(shell_array_, shell_indices_);
+  make_indices(coarse_array_, coarse_indices_);
+}
+
+Result<void> ShellDraws::update(const ModelTable& table, const ModelTextures& textures, const ModelChanges& changes) {
+  origin_ = textures.origin();
+  if (made_ && (made_->document != table.source().document_key() ||
+                (changes.topology && made_->shell_versions != shell_versions_of(table.source()))))
+    drop_levels();
+  if (!made_ && (ordered_ != table.shell_count() || changes.topology)) {
+    std::vector<ShellIndex> order(table.shell_count());
+    for (std::size_t s = 0; s < order.size(); ++s) order[s] = ShellIndex(s);
+    if (Result<void> done = upload_order(order); !done) return done;
+  }
+  std::vector<std::uint64_t> marks;
+  for (std::size_t c = 0; c < table.source().chunk_count(SnapshotArray::shell_marks); ++c)
+    marks.push_back(table.source().chunk_version(SnapshotArray::shell_marks, c));
+  const bool moved = changes.topology || changes.visibility || !changes.moved_chunks.empty();
+  if (moved) find_bounds(table, textures);
+  if (made_ && (moved || marks != marks_)) find_held(table);
+  marks_ = std::move(marks);
+  return {};
+}
+
+void ShellDraws::drop_levels() {
+  made_.reset();
+  held_.clear();
+  moved_ = false;
+  ordered_ = 0;
+}
+
+Result<void> ShellDraws::set_levels(std::shared_ptr<const MadeLevels> made, const ModelTable& table, const ModelTextures& textures) {
+  if (!made || made->document != table.source().document_key() || made->shell_versions != shell_versions_of(table.source())) return {};
+  const std::vector<mesh::lod::CoarseTriangle>& triangles = made->levels.triangles;
+  if (const auto reserved = coarse_.reserve(std::max<std::size_t>(triangles.size(), 1), "coarse triangles"); !reserved)
+    return fail(reserved.error());
+  std::vector<std::array<std::uint32_t, 4>> rows;
+  rows.reserve(triangles.size());
+  for (const mesh::lod::CoarseTriangle& t : triangles) rows.push_back({t.node[0].value, t.node[1].value, t.node[2].value, t.shell.value});
+  coarse_.upload(std::as_bytes(std::span(rows)));
+  made_ = std::move(made);
+  if (Result<void> done = upload_order(made_->levels.shells); !done) return done;
+  runs_.clear();
+  for (std::size_t c = 0; c < made_->levels.shell_clusters; ++c)
+    runs_.push_back({made_->levels.clusters[c].first, made_->levels.clusters[c].count, {}, true});
+  find_bounds(table, textures);
+  find_held(table);
+  return {};
+}
+
+Result<void> ShellDraws::upload_order(const std::vector<ShellIndex>& shells) {
+  std::vector<std::uint32_t> indices;
+  indices.reserve(shells.size() * kCorners.size());
+  for (const ShellIndex shell : shells) append_shell(shell.value, indices);
+  while (glGetError() != GL_NO_ERROR) {
+  }
+  upload(all_array_, indices, GL_STATIC_DRAW);
+  if (glGetError() == GL_OUT_OF_MEMORY) return fail("graphics", "no memory for " + std::to_string(shells.size()) + " shells");
+  ordered_ = shells.size();
+  runs_.clear();
+  for (std::size_t first = 0; first < shells.size(); first += kShellsOfRun)
+    runs_.push_back(
+        {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(std::min(kShellsOfRun, shells.size() - first)), {}, true});
+  return {};
+}
+
+void ShellDraws::find_bounds(const ModelTable& table, const ModelTextures& textures) {
+  const std::vector<ShellIndex>* order = made_ ? &made_->levels.shells : nullptr;
+  const mesh::Vec3 origin = textures.origin();
+  parallel_for(runs_.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t r = begin; r < end; ++r) {
+      Run& run = runs_[r];
+      stereo::Box box;
+      run.shown = false;
+      for (std::uint32_t i = run.first; i < run.first + run.count; ++i) {
+        const std::size_t s = order != nullptr ? (*order)[i].value : i;
+        mesh::ShellNodes nodes;
+        if (!table.shell(s, nodes) || !table.shell_visible(s)) continue;
+        run.shown = true;
+        for (const mesh::NodeIndex node : nodes.node)
+          if (const mesh::Vec3 at = table.position(node.value); finite(at)) box.add(mesh::Vec3(at - origin));
+      }
+      if (box.empty()) {
+        run.bounds = {};
+        run.shown = false;
+      } else {
+        run.bounds = {(box.low + box.high) / 2, (box.high - box.low).norm() / 2};
+      }
+    }
+  });
+}
+
+/// What stands for shells that moved since the levels were made, or for selected ones, isn't drawn.
+void ShellDraws::find_held(const ModelTable& table) {
+  std::vector<std::uint8_t> moved(table.node_count());
+  parallel_for(moved.size(), 16384, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      const Eigen::Vector3f at = table.position(n).cast<float>();
+      moved[n] = (at.array() == made_->places[n].array()).all() || !at.allFinite() ? 0 : 1;
+    }
+  });
+  moved_ = std::find(moved.begin(), moved.end(), 1) != moved.end();
+  std::vector<std::uint8_t> held(table.shell_count());
+  if (moved_)
+    parallel_for(held.size(), 16384, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t s = begin; s < end; ++s) {
+        mesh::ShellNodes nodes;
+        if (!table.shell(s, nodes)) continue;
+        for (const mesh::NodeIndex node : nodes.node) held[s] |= moved[node.value];
+      }
+    });
+  std::size_t selected = 0;
+  for (std::size_t s = 0; s < held.size(); ++s) selected += table.shell_selected(s) ? 1 : 0;
+  if (selected <= kMostHeld)
+    for (std::size_t s = 0; s < held.size(); ++s)
+      if (table.shell_selected(s)) held[s] = 1;
+  held_ = mesh::lod::groups_over(made_->levels, held);
+}
+
+void ShellDraws::draw_all(const Eigen::Matrix4d& clip_from_model) const {
+  glBindVertexArray(all_array_.get());
+  const ViewVolume volume(clip_from_model);
+  std::size_t first = 0, last = 0;  // neighbours are drawn in one call
+  const auto flush = [&] {
+    if (last > first)
+      glDrawElements(GL_TRIANGLES, static_cast<GLsizei>((last - first) * kCorners.size()), GL_UNSIGNED_INT,
+                     reinterpret_cast<const void*>(first * kCorners.size() * sizeof(std::uint32_t)));
+  };
+  for (const Run& run : runs_) {
+    if (!run.shown || !volume.may_hold(run.bounds)) continue;
+    if (run.first != last) {
+      flush();
+      first = run.first;
+    }
+    last = run.first + run.count;
+  }
+  flush();
+  glBindVertexArray(0);
+}
+
+void ShellDraws::choose(const mesh::lod::Viewpoint& from, const Eigen::Matrix4d& clip_from_model, std::size_t triangles) {
+  const mesh::lod::Levels& levels = made_->levels;
+  const ViewVolume volume(clip_from_model);
+  const auto is_seen = [&](std::uint32_t c) {
+    if (c < levels.shell_clusters) return runs_[c].shown && volume.may_hold(runs_[c].bounds);
+    mesh::lod::Sphere bounds = levels.clusters[c].bounds;
+    bounds.centre -= origin_;
+    return volume.may_hold(bounds);
+  };
+  for (double pixels = kFinest;; pixels *= kCoarser) {
+    clusters_.clear();
+    mesh::lod::choose(levels, held_, from, pixels, clusters_);
+    std::erase_if(clusters_, [&](std::uint32_t c) { return !is_seen(c); });
+    chosen_triangles_ = mesh::lod::triangles_of(levels, clusters_);
+    chosen_pixels_ = pixels;
+    if (chosen_triangles_ <= triangles || pixels >= kCoarsest) break;
+  }
+  shell_list_.clear();
+  coarse_list_.clear();
+  for (const std::uint32_t c : clusters_) {
+    const mesh::lod::Cluster& cluster = levels.clusters[c];
+    if (c < levels.shell_clusters) {
+      for (std::uint32_t i = cluster.first; i < cluster.first + cluster.count; ++i) append_shell(levels.shells[i].value, shell_list_);
+    } else {
+      const std::size_t before = coarse_list_.size();
+      coarse_list_.resize(before + 3 * cluster.count);
+      std::iota(coarse_list_.begin() + static_cast<std::ptrdiff_t>(before), coarse_list_.end(), 3 * cluster.first);
+    }
+  }
+  upload(shell_array_, shell_list_, GL_STREAM_DRAW);
+  upload(coarse_array_, coarse_list_, GL_STREAM_DRAW);
+}
+
+void ShellDraws::draw_chosen_shells() const {
+  if (shell_list_.empty()) return;
+  glBindVertexArray(shell_array_.get());
+  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(shell_list_.size()), GL_UNSIGNED_INT, nullptr);
+  glBindVertexArray(0);
+}
+
+void ShellDraws::draw_chosen_coarse() const {
+  if (coarse_list_.empty()) return;
+  glBindVertexArray(coarse_array_.get());
+  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(coarse_list_.size()), GL_UNSIGNED_INT, nullptr);
+  glBindVertexArray(0);
+}
+
+}  // namespace prismesh::kiosk::render

@@ -1,0 +1,79 @@
+// Which shells a picture draws, and how: all of them in an order that follows space, or coarse triangles for those that are small in it.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "kiosk/render/model_textures.h"
+#include "mesh/lod/choose.h"
+#include "mesh/lod/levels.h"
+
+namespace prismesh::kiosk::render {
+
+/// Levels of detail with the places of the nodes that they were made of.
+struct MadeLevels {
+  mesh::lod::Levels levels;
+  std::vector<Eigen::Vector3f> places;        ///< by node; not finite: not drawn
+  std::uint64_t document = 0;                 ///< ModelSource::document_key
+  std::vector<std::uint64_t> shell_versions;  ///< of the chunks of ModelSource's shell_nodes and shell_parts
+};
+
+/// The versions that MadeLevels::shell_versions holds.
+std::vector<std::uint64_t> shell_versions_of(const ModelSource& source);
+
+class ShellDraws {
+ public:
+  ShellDraws();
+
+  /// Follows the model. Levels of other shells are dropped. Errors: no graphics memory.
+  Result<void> update(const ModelTable& table, const ModelTextures& textures, const ModelChanges& changes);
+  /// Takes levels over; ignored if they were made of other shells. Null: none. Errors: no graphics memory.
+  Result<void> set_levels(std::shared_ptr<const MadeLevels> made, const ModelTable& table, const ModelTextures& textures);
+  bool has_levels() const { return made_ != nullptr; }
+  /// Whether nodes have moved since the levels were made.
+  bool is_out_of_date() const { return moved_; }
+
+  /// Draws all shells that may be seen, four vertices each: gl_VertexID is four times the shell, plus the corner. The program, the textures
+  /// and their uniforms must be set.
+  void draw_all(const Eigen::Matrix4d& clip_from_model) const;
+  /// Chooses what is drawn for a viewpoint (deck's coordinates): the finest that has at most `triangles`, off by 1 to 8 pixels.
+  /// Precondition: has_levels().
+  void choose(const mesh::lod::Viewpoint& from, const Eigen::Matrix4d& clip_from_model, std::size_t triangles);
+  /// Draws the chosen shells as draw_all does.
+  void draw_chosen_shells() const;
+  /// Draws the chosen coarse triangles: gl_VertexID is three times the row in `coarse()`, plus the corner.
+  void draw_chosen_coarse() const;
+  const RowTexture& coarse() const { return coarse_; }
+  std::size_t chosen_triangles() const { return chosen_triangles_; }
+  double chosen_pixels() const { return chosen_pixels_; }
+
+ private:
+  /// Neighbours in the order of drawing that are culled together.
+  struct Run {
+    std::uint32_t first = 0, count = 0;  ///< shells
+    mesh::lod::Sphere bounds;            ///< model's coordinates (relative to the origin)
+    bool shown = true;
+  };
+  Result<void> upload_order(const std::vector<mesh::ShellIndex>& shells);
+  void find_bounds(const ModelTable& table, const ModelTextures& textures);
+  void find_held(const ModelTable& table);
+  void drop_levels();
+
+  std::size_t shells_ = 0;
+  gl::VertexArray all_array_, shell_array_, coarse_array_;
+  gl::Buffer all_indices_, shell_indices_, coarse_indices_;
+  std::size_t ordered_ = 0;  ///< shells in all_indices_
+  std::vector<Run> runs_;    ///< with levels: their clusters of shells
+  std::shared_ptr<const MadeLevels> made_;
+  RowTexture coarse_{kFourIndices};
+  std::vector<std::uint8_t> held_;    ///< by group of the levels
+  std::vector<std::uint64_t> marks_;  ///< versions of the shells' marks, of which selection held_ is
+  bool moved_ = false;
+  mesh::Vec3 origin_ = mesh::Vec3::Zero();
+  std::vector<std::uint32_t> clusters_, shell_list_, coarse_list_;
+  std::size_t chosen_triangles_ = 0;
+  double chosen_pixels_ = 0;
+};
+
+}  // namespace prismesh::kiosk::render

@@ -1,0 +1,219 @@
+// Moving pictures with levels of detail: near the picture at rest; picking and pictures at rest don't change.
+#include <algorithm>
+#include <cmath>
+
+#include "kiosk/levels_worker.h"
+#include "kiosk/render/make_levels.h"
+#include "tests/kiosk/render_test.h"
+
+namespace prismesh::kiosk::render {
+namespace {
+
+constexpr int kLevelsWidth = 400, kLevelsHeight = 300;
+
+/// Two waved sheets, one in front of the other.
+test::TestSource waves(std::uint32_t side = 150) {
+  test::TestSource source;
+  test::add_grid(source, side, side, 0,
+                 [](double u, double v) { return mesh::Vec3(600 * u, 500 * v, 40 * std::sin(9 * u) * std::cos(8 * v)); });
+  test::add_grid(source, side / 2, side / 2, 1,
+                 [](double u, double v) { return mesh::Vec3(150 + 300 * u, 100 + 250 * v, 150 + 60 * u * v); });
+  return source;
+}
+
+class RenderLevels : public RenderTest {
+ protected:
+  Picture of(const test::TestSource& source) {
+    show(source);
+    Picture picture = fitted("mono", "iso", kLevelsWidth, kLevelsHeight);
+    picture.outlines = picture.element_edges = false;
+    return picture;
+  }
+  void set_levels(const test::TestSource& source) {
+    const auto made = std::make_shared<const MadeLevels>(make_levels(source).value());
+    ASSERT_TRUE(renderer_->set_levels(made));
+  }
+  /// The renderer keeps a scene that is at rest, so the next picture is drawn anew from another side and back.
+  Image moving(Picture picture) {
+    const stereo::View view = picture.view;
+    picture.moving = true;
+    picture.view = stereo::orbit(view, 0.3, 0);
+    draw(picture, kLevelsWidth, kLevelsHeight);
+    picture.view = view;
+    picture.view = stereo::orbit(view, 1e-9, 0);
+    return draw(picture, kLevelsWidth, kLevelsHeight);
+  }
+  static bool is_ground(const Image& image, const Image& ground, int x, int y) {
+    return std::equal(image.at(x, y), image.at(x, y) + 3, ground.at(x, y), [](int a, int b) { return std::abs(a - b) <= 2; });
+  }
+  Image ground() {
+    auto empty = Renderer::create({.samples = 1});
+    Picture picture;
+    picture.profile = *stereo::find_profile("mono");
+    auto offscreen = Offscreen::create(kLevelsWidth, kLevelsHeight);
+    EXPECT_TRUE((*empty)->draw(picture, offscreen->framebuffer(), kLevelsWidth, kLevelsHeight));
+    return offscreen->read();
+  }
+};
+
+TEST_F(RenderLevels, at_rest_change_no_pixel) {
+  const test::TestSource source = waves();
+  Picture picture = of(source);
+  picture.outlines = picture.element_edges = true;
+  const Image before = draw(picture, kLevelsWidth, kLevelsHeight);
+  set_levels(source);
+  show(source);
+  const Image after = draw(picture, kLevelsWidth, kLevelsHeight);
+  EXPECT_EQ(before.rgb, after.rgb);
+}
+
+TEST_F(RenderLevels, in_motion_keep_the_outline_to_two_pixels) {
+  const test::TestSource source = waves();
+  const Picture picture = of(source);
+  const Image whole = draw(picture, kLevelsWidth, kLevelsHeight);
+  set_levels(source);
+  const Image coarse = moving(picture);
+  const Renderer::Figures figures = renderer_->figures();
+  EXPECT_GT(figures.moving_triangles, 0u);
+  EXPECT_LT(figures.moving_triangles, source.shell_nodes.size() / 4) << "few triangles";
+  EXPECT_LE(figures.moving_pixels, 2);
+  const Image behind = ground();
+  std::size_t beyond = 0, model = 0, apart = 0;
+  for (int y = 3; y < kLevelsHeight - 3; ++y)
+    for (int x = 3; x < kLevelsWidth - 3; ++x) {
+      const bool here = !is_ground(coarse, behind, x, y), there = !is_ground(whole, behind, x, y);
+      model += there ? 1 : 0;
+      if (here && there) {
+        apart += std::abs(brightness(coarse, x, y) - brightness(whole, x, y)) > 40 ? 1 : 0;
+        continue;
+      }
+      if (here == there) continue;
+      bool near = false;  // the outline of the whole picture is within two pixels
+      for (int dy = -2; dy <= 2 && !near; ++dy)
+        for (int dx = -2; dx <= 2 && !near; ++dx) near = !is_ground(whole, behind, x + dx, y + dy) == here;
+      beyond += near ? 0 : 1;
+    }
+  EXPECT_GT(model, 20'000u);
+  EXPECT_EQ(beyond, 0u);
+  EXPECT_LT(apart, model / 50) << "the shading is that of the shells";
+}
+
+TEST_F(RenderLevels, dont_change_what_is_picked) {
+  const test::TestSource source = waves();
+  const Picture picture = of(source);
+  const stereo::Aim aim = aim_of(picture, kLevelsWidth, kLevelsHeight);
+  std::vector<std::optional<mesh::ShellIndex>> before;
+  for (int y = 10; y < kLevelsHeight; y += 23)
+    for (int x = 10; x < kLevelsWidth; x += 29) before.push_back(renderer_->shell_at(aim, {x, y}));
+  set_levels(source);
+  moving(picture);
+  show(source);
+  std::size_t at = 0;
+  for (int y = 10; y < kLevelsHeight; y += 23)
+    for (int x = 10; x < kLevelsWidth; x += 29) EXPECT_EQ(renderer_->shell_at(aim, {x, y}), before[at++]) << x << "," << y;
+}
+
+TEST_F(RenderLevels, show_moved_nodes_where_they_are) {
+  test::TestSource source = waves();
+  of(source);
+  set_levels(source);
+  EXPECT_TRUE(renderer_->levels_are_current());
+  // A spike of one node, which coarse triangles wouldn't have.
+  const std::size_t node = 75 * 151 + 75;
+  source.positions[node].z() += 200;
+  source.touch(ipc::SnapshotArray::positions, node / mesh::kChunkSize);
+  const Picture picture = of(source);
+  EXPECT_FALSE(renderer_->levels_are_current());
+  const Image whole = draw(picture, kLevelsWidth, kLevelsHeight), coarse = moving(picture);
+  const stereo::Aim aim = aim_of(picture, kLevelsWidth, kLevelsHeight);
+  const Eigen::Vector4d clip = aim.clip_from_deck() * (source.positions[node] - mesh::Vec3(0, 0, 30)).homogeneous();
+  const int x = static_cast<int>((0.5 + 0.5 * clip.x() / clip.w()) * kLevelsWidth),
+            y = static_cast<int>((0.5 - 0.5 * clip.y() / clip.w()) * kLevelsHeight);
+  for (int dy = -1; dy <= 1; ++dy)
+    for (int dx = -1; dx <= 1; ++dx) EXPECT_NEAR(brightness(coarse, x + dx, y + dy), brightness(whole, x + dx, y + dy), 6);
+}
+
+TEST_F(RenderLevels, of_other_shells_arent_used) {
+  test::TestSource source = waves();
+  of(source);
+  test::TestSource other = source;
+  other.shell_nodes.pop_back();
+  other.shell_parts.pop_back();
+  set_levels(other);
+  EXPECT_FALSE(renderer_->levels_are_current());
+  set_levels(source);
+  EXPECT_TRUE(renderer_->levels_are_current());
+  source.shell_nodes[7] = source.shell_nodes[8];
+  source.touch(ipc::SnapshotArray::shell_nodes, 0);
+  const Picture picture = of(source);
+  EXPECT_FALSE(renderer_->levels_are_current()) << "they are dropped";
+  moving(picture);
+}
+
+TEST_F(RenderLevels, dont_show_hidden_parts) {
+  test::TestSource source = waves();
+  of(source);
+  set_levels(source);
+  source.hidden[0] = true;
+  const Picture picture = of(source);
+  const Image whole = draw(picture, kLevelsWidth, kLevelsHeight), coarse = moving(picture);
+  std::size_t differ = 0;
+  for (int y = 0; y < kLevelsHeight; ++y)
+    for (int x = 0; x < kLevelsWidth; ++x) differ += std::abs(brightness(whole, x, y) - brightness(coarse, x, y)) > 40 ? 1 : 0;
+  EXPECT_LT(differ, 300u);
+}
+
+TEST_F(RenderLevels, hold_selected_shells_apart) {
+  test::TestSource source = waves();
+  Picture picture = of(source);
+  const Image plain = draw(picture, kLevelsWidth, kLevelsHeight);
+  set_levels(source);
+  for (std::size_t row = 20; row < 40; ++row)
+    for (std::size_t column = 100; column < 120; ++column) source.shell_marks[150 * row + column] = mesh::document::kSelected;
+  for (std::size_t chunk = 0; chunk < 2; ++chunk) source.touch(ipc::SnapshotArray::shell_marks, chunk);
+  picture = of(source);
+  const Image whole = draw(picture, kLevelsWidth, kLevelsHeight), coarse = moving(picture);
+  std::size_t selected = 0, same = 0;
+  for (int y = 0; y < kLevelsHeight; ++y)
+    for (int x = 0; x < kLevelsWidth; ++x) {
+      if (brightness(whole, x, y) - brightness(plain, x, y) < 30) continue;
+      ++selected;
+      same += std::abs(brightness(coarse, x, y) - brightness(whole, x, y)) <= 6 ? 1 : 0;
+    }
+  EXPECT_GT(selected, 200u);
+  EXPECT_GT(same, selected - selected / 20);
+}
+
+TEST(LevelsWorker, makes_levels_once_the_model_rests_and_stops_for_another) {
+  const auto large = std::make_shared<test::TestSource>(waves(460)), other = std::make_shared<test::TestSource>(waves(460));
+  other->key = 2;
+  LevelsWorker worker;
+  EXPECT_EQ(worker.turn(0, large, true), nullptr);
+  EXPECT_EQ(worker.next_ns(0), LevelsWorker::kRestNs);
+  EXPECT_EQ(worker.turn(LevelsWorker::kRestNs - 1, large, true), nullptr);
+  EXPECT_EQ(worker.turn(LevelsWorker::kRestNs, large, true), nullptr) << "begins";
+  EXPECT_EQ(worker.turn(LevelsWorker::kRestNs + 1, other, true), nullptr) << "another document: stops";
+  std::shared_ptr<const MadeLevels> made;
+  for (std::int64_t now = 3 * LevelsWorker::kRestNs; !made; now += 1'000'000) {
+    made = worker.turn(now, other, true);
+    std::this_thread::yield();
+  }
+  EXPECT_EQ(made->document, 2u);
+  EXPECT_EQ(made->levels.shells.size(), other->shell_nodes.size());
+  const auto small = std::make_shared<test::TestSource>(waves(20));
+  EXPECT_EQ(worker.turn(1'000'000'000'000, small, true), nullptr);
+  EXPECT_EQ(worker.next_ns(1'000'000'000'000), std::nullopt);
+}
+
+TEST(MakeLevels, leaves_out_shells_with_nodes_out_of_range) {
+  test::TestSource source = waves(30);
+  source.shell_nodes[5].node[2] = mesh::NodeIndex(std::size_t{1'000'000});
+  source.positions[3].x() = std::nan("");
+  const MadeLevels made = make_levels(source).value();
+  EXPECT_LT(made.levels.shells.size(), source.shell_nodes.size());
+  EXPECT_TRUE(std::find(made.levels.shells.begin(), made.levels.shells.end(), mesh::ShellIndex(std::size_t{5})) ==
+              made.levels.shells.end());
+}
+
+}  // namespace
+}  // namespace prismesh::kiosk::render
