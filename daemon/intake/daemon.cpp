@@ -57,6 +57,8 @@ struct Daemon::Impl final : daemon::Service<BusProtocol> {
   std::unique_ptr<Intake> intake;
   std::thread serving;
 
+  bool is_well() override { return intake->is_serving(); }
+
   void begin_serving() {
     intake->on_change([this](const std::string& model) { post([this, model] { tell_all(ipc::CatalogueChanged{model}); }); });
     serving = std::thread([this] { intake->run(); });

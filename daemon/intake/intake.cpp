@@ -3,6 +3,7 @@
 #include <openssl/rand.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <new>
 #include <utility>
@@ -17,6 +18,8 @@ namespace prismesh::intake {
 namespace {
 
 constexpr std::chrono::minutes kExpirePeriod{1};
+constexpr std::chrono::seconds kBeatPeriod{1};
+constexpr std::int64_t kMaxSilenceNs = 10'000'000'000;
 
 void fill_with_randomness(std::span<std::byte> bytes) {
   // It fails where the kernel gives none, and nothing that it is for may go on then.
@@ -46,7 +49,11 @@ struct Intake::Impl {
   std::optional<Api> api;
   std::unique_ptr<HttpsServer> server;
 
+  std::atomic<std::int64_t> beat_ns{0};
+
   void keep_house(std::chrono::milliseconds scrub_every) {
+    beat_ns = MonotonicClock().now_ns();
+    server->every(kBeatPeriod, [this] { beat_ns = MonotonicClock().now_ns(); });
     server->every(kExpirePeriod, [this] {
       store->run([](Store& models) {
         if (const std::size_t count = models.uploads().expire(); count > 0)
@@ -116,6 +123,7 @@ void Intake::describe(const ipc::store::ContentHash& model, const ipc::store::Mo
 }
 
 void Intake::on_change(std::function<void(const std::string&)> told) { impl_->events.listen(std::move(told)); }
+bool Intake::is_serving() const { return MonotonicClock().now_ns() - impl_->beat_ns < kMaxSilenceNs; }
 void Intake::run() { impl_->server->run(); }
 void Intake::stop() { impl_->server->stop(); }
 

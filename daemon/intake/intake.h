@@ -43,6 +43,9 @@ class Intake {
   /// Called from another thread with the hash of each model that is published, described or removed. Before `run`.
   void on_change(std::function<void(const std::string& model)> told);
 
+  /// Whether `run` has served in the last seconds. Safe to call from any thread.
+  bool is_serving() const;
+
   /// Serves on the calling thread until `stop`, which any thread may call.
   void run();
   void stop();

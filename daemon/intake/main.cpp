@@ -24,6 +24,8 @@ int main(int argc, char** argv) {
     auto options = prismesh::intake::intake_options(settings->remote, prismesh::ipc::state_directory(given.path("--state-dir")));
     if (!options) return prismesh::fail(options.error());
     if (const auto store = given.path("--store")) options->store = *store;
+    // Other programs are told of it.
+    options->store = std::filesystem::absolute(options->store);
     auto daemon = prismesh::intake::Daemon::start({prismesh::ipc::runtime_directory(given.path("--runtime-dir")), *options});
     if (!daemon) return prismesh::fail(daemon.error());
     daemon->run();

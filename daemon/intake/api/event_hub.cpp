@@ -1,5 +1,6 @@
 #include "daemon/intake/api/event_hub.h"
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -8,13 +9,16 @@ namespace prismesh::intake {
 namespace {
 
 constexpr std::size_t kMaxFollowers = 200;
+constexpr std::size_t kMaxFollowersOfAToken = 8;
 constexpr std::size_t kMaxQueuedBytes = std::size_t{64} << 10;
 
 }  // namespace
 
 std::optional<std::uint64_t> EventHub::follow(const Caller& caller) {
   const std::lock_guard lock(mutex_);
-  if (followers_.size() >= kMaxFollowers) return std::nullopt;
+  const auto same =
+      std::count_if(followers_.begin(), followers_.end(), [&](const auto& each) { return each.second.caller.name == caller.name; });
+  if (followers_.size() >= kMaxFollowers || static_cast<std::size_t>(same) >= kMaxFollowersOfAToken) return std::nullopt;
   followers_[++last_].caller = caller;
   return last_;
 }

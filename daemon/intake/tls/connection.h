@@ -34,6 +34,14 @@ struct ConnectionContext {
   std::shared_ptr<StoreThread> store;
 };
 
+/// A file that is being sent.
+struct FileSending {
+  std::shared_ptr<FileBody> file;
+  std::uint64_t sent = 0;
+  ipc::store::Sha256 hash;
+  std::string piece;
+};
+
 class Connection : public std::enable_shared_from_this<Connection> {
  public:
   Connection(boost::asio::ip::tcp::socket socket, boost::asio::ssl::context& tls, ConnectionContext context);
@@ -45,14 +53,6 @@ class Connection : public std::enable_shared_from_this<Connection> {
   using Parser = boost::beast::http::request_parser<boost::beast::http::buffer_body>;
   using HeaderOnly = boost::beast::http::response<boost::beast::http::empty_body>;
   using WholeResponse = boost::beast::http::response<boost::beast::http::string_body>;
-
-  /// A file that is being sent.
-  struct Sending {
-    std::shared_ptr<FileBody> file;
-    std::uint64_t sent = 0;
-    ipc::store::Sha256 hash;
-    std::string piece;
-  };
 
   void expire_in(std::chrono::milliseconds time);
   void read_request(std::chrono::milliseconds patience);
@@ -93,7 +93,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   std::optional<WholeResponse> whole_;
   std::optional<HeaderOnly> header_;
   std::optional<boost::beast::http::response_serializer<boost::beast::http::empty_body>> serializer_;
-  std::optional<Sending> sending_;
+  std::optional<FileSending> sending_;
   std::optional<std::uint64_t> follower_;
   std::string events_text_;
   bool writes_events_ = false;
