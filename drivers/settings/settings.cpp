@@ -189,6 +189,52 @@ Key mode(std::string_view name, ModeSetting& to) {
           }};
 }
 
+/// An address and a port, like "0.0.0.0:7443" or "[::]:7443"; empty: none.
+Key address_and_port(std::string_view name, std::string& address, std::uint16_t& port) {
+  return {name, [&address, &port](const toml::node& node) -> Problem {
+            const Problem wrong = "must be an address and a port in quotes, like \"0.0.0.0:7443\" or \"[::]:7443\"";
+            const auto* value = node.as_string();
+            if (value == nullptr) return wrong;
+            const std::string_view text = value->get();
+            address.clear();
+            port = 0;
+            if (text.empty()) return {};
+            const std::size_t colon = text.rfind(':');
+            if (colon == std::string_view::npos) return wrong;
+            std::string_view host = text.substr(0, colon);
+            const bool in_brackets = host.starts_with('[') && host.ends_with(']') && host.size() > 2;
+            if (in_brackets) host = host.substr(1, host.size() - 2);
+            const bool plain = host.find_first_not_of(in_brackets ? "0123456789abcdefABCDEF:." : "0123456789.") == std::string_view::npos;
+            std::uint16_t number = 0;
+            const auto [end, error] = std::from_chars(text.data() + colon + 1, text.data() + text.size(), number);
+            if (!plain || host.empty() || error != std::errc() || end != text.data() + text.size() || number == 0) return wrong;
+            address = host;
+            port = number;
+            return {};
+          }};
+}
+
+/// Names of hosts, in small letters afterwards.
+Key host_names(std::string_view name, std::vector<std::string>& to) {
+  return {name, [&to](const toml::node& node) -> Problem {
+            const Problem wrong = "must be a list of names in quotes, like [\"station.example.com\"]";
+            const toml::array* list = node.as_array();
+            if (list == nullptr) return wrong;
+            std::vector<std::string> names;
+            for (const toml::node& each : *list) {
+              const auto* value = each.as_string();
+              if (value == nullptr || value->get().empty()) return wrong;
+              std::string& host = names.emplace_back(value->get());
+              for (char& c : host) {
+                if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+                if (!((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-' || c == '.')) return wrong;
+              }
+            }
+            to = std::move(names);
+            return {};
+          }};
+}
+
 /// The name of a socket of the graphics card.
 Key connector_name(std::string_view name, std::string& to) {
   return {name, [&to](const toml::node& node) -> Problem {
@@ -244,13 +290,20 @@ Section pen_section(HapticPenSettings& pen, const fs::path& folder) {
            choice("hand", {"right", "left"}, [&pen](std::size_t i) { pen.left_handed = i == 1; })}};
 }
 
+Section remote_section(RemoteSettings& remote) {
+  return {"remote",
+          {address_and_port("listen", remote.address, remote.port), host_names("hosts", remote.hosts),
+           whole("quota_gb", remote.quota_gb, 1, 1'000'000, " GB"), whole("file_gb", remote.file_gb, 1, 1000, " GB"),
+           whole("reserved_gb", remote.reserved_gb, 0, 1'000'000, " GB"), whole("upload_hours", remote.upload_hours, 1, 8760, " h")}};
+}
+
 class Reader {
  public:
   Reader(std::string file, StationSettings& settings, DeviceLines& places)
       : file_(std::move(file)), folder_(fs::path(file_).parent_path()), settings_(settings), places_(places) {}
 
   Result<void> read(const toml::table& root) const {
-    const std::array<Section, 6> sections{
+    const std::array<Section, 7> sections{
         Section{"display",
                 {name_or_file("profile", settings_.display.profile, folder_, "a profile's name or file in quotes, like \"prism-mask\""),
                  number("latency_ms", settings_.display.latency_ms, 0, 200, " ms"),
@@ -263,7 +316,8 @@ class Reader {
                  whole("hang_s", settings_.document.hang_s, 0, 86'400, " s")}},
         tracker_section(settings_.eye_tracker, places_, file_),
         servo_section(settings_.prism_servo, places_, file_),
-        pen_section(settings_.haptic_pen, folder_)};
+        pen_section(settings_.haptic_pen, folder_),
+        remote_section(settings_.remote)};
     std::vector<std::string_view> names;
     for (const Section& section : sections) names.push_back(section.name);
     for (const auto& [key, node] : root) {

@@ -102,6 +102,17 @@ struct DocumentSettings {
   std::int64_t hang_s = 60;        ///< the server ends itself, to be restarted, after so long without a heartbeat; 0: never
 };
 
+/// What prismesh-intake lets in from the network.
+struct RemoteSettings {
+  std::string address;             ///< where it listens
+  std::uint16_t port = 0;          ///< 0: it serves nobody
+  std::vector<std::string> hosts;  ///< names by which clients call the station, beside its addresses
+  std::int64_t quota_gb = 50;      ///< models and uploads of one client
+  std::int64_t file_gb = 8;        ///< one file
+  std::int64_t reserved_gb = 2;    ///< stay free on the disk, for the journals
+  std::int64_t upload_hours = 24;  ///< an upload that gets no bytes for so long is removed
+};
+
 struct StationSettings {
   DisplaySettings display;
   HandSettings hand;
@@ -109,6 +120,7 @@ struct StationSettings {
   EyeTrackerSettings eye_tracker;
   PrismServoSettings prism_servo;
   HapticPenSettings haptic_pen;
+  RemoteSettings remote;
   std::vector<std::filesystem::path> files;  ///< the files that were read, in order
 };
 

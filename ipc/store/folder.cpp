@@ -85,19 +85,27 @@ Result<Descriptor> Folder::open_file(const std::string& name, int flags) const {
 Result<Descriptor> Folder::read(const std::string& name) const { return open_file(name, O_RDONLY); }
 Result<Descriptor> Folder::read_and_write(const std::string& name) const { return open_file(name, O_RDWR); }
 
-Result<Descriptor> Folder::create(const std::string& name) const {
-  Descriptor file(::openat(descriptor_.get(), name.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0640));
+Result<Descriptor> Folder::create(const std::string& name, mode_t mode) const {
+  Descriptor file(::openat(descriptor_.get(), name.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, mode));
   if (!file) return system_failure(path_ / name, "can't be made", errno);
   return file;
 }
 
-Result<void> Folder::write_new(const std::string& name, std::string_view content) const {
-  const Result<Descriptor> file = create(name);
+Result<void> Folder::write_new(const std::string& name, std::string_view content, mode_t mode) const {
+  const Result<Descriptor> file = create(name, mode);
   if (!file) return fail(file.error());
   Result<void> written = write_at(*file, content, 0, path_ / name);
   if (written) written = flush_file(*file, path_ / name);
   if (!written) (void)remove(name);
   return written;
+}
+
+Result<void> Folder::replace(const std::string& name, std::string_view content, const std::string& temporary, mode_t mode) const {
+  if (const Result<void> written = write_new(temporary, content, mode); !written) return written;
+  Result<void> put = rename(temporary, *this, name);
+  if (!put) (void)remove(temporary);
+  if (put) put = flush();
+  return put;
 }
 
 Result<std::string> Folder::content(const std::string& name, std::size_t max_bytes) const {

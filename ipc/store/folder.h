@@ -31,9 +31,12 @@ class Folder {
   Result<Descriptor> read(const std::string& name) const;
   Result<Descriptor> read_and_write(const std::string& name) const;
   /// A file that wasn't there.
-  Result<Descriptor> create(const std::string& name) const;
+  Result<Descriptor> create(const std::string& name, mode_t mode = 0640) const;
   /// Makes a file with this content and flushes it.
-  Result<void> write_new(const std::string& name, std::string_view content) const;
+  Result<void> write_new(const std::string& name, std::string_view content, mode_t mode = 0640) const;
+  /// Puts a file with this content in the place of what has its name, by way of `temporary`, and flushes both. Errors: what has its name
+  /// may be the old or the new one.
+  Result<void> replace(const std::string& name, std::string_view content, const std::string& temporary, mode_t mode = 0640) const;
   /// The content of a small file. Errors: it has more than `max_bytes`.
   Result<std::string> content(const std::string& name, std::size_t max_bytes) const;
 

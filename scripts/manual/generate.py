@@ -19,6 +19,7 @@ PROGRAMS = [
     ("prismesh-kiosk", 1, "show and edit the document of a Prismesh station"),
     ("prismesh-modeld", 8, "keep the document of a Prismesh station"),
     ("prismesh-deviced", 8, "run the eye tracker and the prism mask of a Prismesh station"),
+    ("prismesh-intake", 8, "take models from the network"),
     ("prismesh-import", 8, "read one deck in a sandbox"),
 ]
 

@@ -34,7 +34,7 @@ main_pid() { systemctl show -P MainPID "$1"; }
 # --- the units themselves ---
 services="prismesh-modeld prismesh-deviced prismesh-pen prismesh-kiosk"
 check "systemd-analyze verify" bash -c 'said=$(systemd-analyze verify --man=no /usr/lib/systemd/system/prismesh* 2>&1); echo "$said"; [ -z "$(grep prismesh <<<"$said")" ]'
-for service in $services; do
+for service in $services prismesh-intake; do
   limit=15
   case $service in prismesh-deviced | prismesh-pen) limit=17 ;; esac
   check "exposure of $service at most 1.${limit#1}" systemd-analyze security --offline=yes --threshold=$limit /usr/lib/systemd/system/$service.service

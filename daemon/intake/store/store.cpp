@@ -30,6 +30,7 @@ using ipc::store::SetFile;
 
 constexpr const char* kIncomingFolder = "incoming";
 constexpr const char* kCatalogueFile = "catalogue.sqlite";
+constexpr std::size_t kMaxPictureBytes = std::size_t{4} << 20;
 constexpr mode_t kReadableMode = 0750;  // the group reads models
 constexpr mode_t kPrivateMode = 0700;
 
@@ -248,24 +249,14 @@ Result<void> Store::put_new_content(std::string_view bytes, const ContentHash& h
   const Result<Folder> shard = content_.make_folder(ipc::store::shard_of(hash), kReadableMode);
   if (!shard) return fail(shard.error());
   if (const Result<void> flushed = content_.flush(); !flushed) return flushed;
-  if (const Result<void> put = replace(*shard, hash.hex(), bytes); !put) return put;
+  if (const Result<void> put = shard->replace(hash.hex(), bytes, uploads_.new_name()); !put) return put;
   if (damaged_.erase(hash) == 0) return {};
   return damaged_folder_.remove(hash.hex());
 }
 
-/// Puts a small file in the place of the one with its name.
-Result<void> Store::replace(const Folder& folder, const std::string& name, std::string_view content) {
-  const std::string temporary = uploads_.new_name();
-  if (const Result<void> written = folder.write_new(temporary, content); !written) return written;
-  Result<void> put = folder.rename(temporary, folder, name);
-  if (!put) (void)folder.remove(temporary);
-  if (put) put = folder.flush();
-  return put;
-}
-
 /// From its rename on, the model is there.
 Result<void> Store::put_record(const ModelRecord& record) {
-  return replace(models_, record.model.hex(), ipc::store::encode_record(record));
+  return models_.replace(record.model.hex(), ipc::store::encode_record(record), uploads_.new_name());
 }
 
 void Store::catalogue_put(const ModelRecord& record) {
@@ -363,6 +354,14 @@ Outcome<ipc::Descriptor> Store::open_file(const SetFile& file) const {
   Result<ipc::Descriptor> opened = reader_.open_file(file);
   if (!opened) return refuse(Refusal::damaged, opened.error());
   return std::move(*opened);
+}
+
+Outcome<std::string> Store::picture(const ContentHash& hash) const {
+  const Result<Folder> shard = content_.folder(ipc::store::shard_of(hash));
+  Result<std::string> bytes = shard ? shard->content(hash.hex(), kMaxPictureBytes) : tl::unexpected(shard.error());
+  if (!bytes) return refuse(Refusal::missing, bytes.error());
+  if (ipc::store::sha256(*bytes) != hash) return refuse(Refusal::damaged, (shard->path() / hash.hex()).string(), "is damaged");
+  return std::move(*bytes);
 }
 
 Outcome<std::vector<CatalogueEntry>> Store::list(const CatalogueQuery& query) {

@@ -58,6 +58,8 @@ class Store {
 
   Outcome<ipc::store::FoundModel> find(const ipc::store::ContentHash& model) const;
   Outcome<ipc::Descriptor> open_file(const ipc::store::SetFile& file) const;
+  /// The bytes of a thumbnail, checked. Errors: missing, damaged.
+  Outcome<std::string> picture(const ipc::store::ContentHash& hash) const;
   Outcome<std::vector<CatalogueEntry>> list(const CatalogueQuery& query);
   Outcome<StoreFigures> figures() const;
 
@@ -80,7 +82,6 @@ class Store {
                             const std::map<ContentHash, std::string>& uploads) const;
   Result<void> put_content(const std::string& incoming, const ContentHash& hash);
   Result<void> put_new_content(std::string_view bytes, const ContentHash& hash);
-  Result<void> replace(const ipc::store::Folder& folder, const std::string& name, std::string_view content);
   Result<void> put_record(const ipc::store::ModelRecord& record);
   bool has_content(const ContentHash& hash, std::uint64_t bytes) const;
   void catalogue_put(const ipc::store::ModelRecord& record);

@@ -20,7 +20,7 @@ using ipc::store::Folder;
 
 constexpr std::string_view kRecordEnding = ".upload";  ///< whose the upload is
 constexpr std::string_view kChunkEnding = ".chunk";    ///< where a chunk begins that isn't checked yet
-constexpr std::size_t kMaxUploadRecordBytes = std::size_t{32} << 10;
+constexpr std::size_t kMaxUploadRecordBytes = std::size_t{128} << 10;
 constexpr std::size_t kIdBytes = 16;
 constexpr std::size_t kHashPiece = std::size_t{1} << 20;
 

@@ -45,6 +45,9 @@ std::string all_of(const StationSettings& settings) {
   const HapticPenSettings& p = settings.haptic_pen;
   text << '|' << int(p.driver) << p.port << '|' << p.max_newton << '|' << p.stiffness_newton_m << '|' << p.friction << '|'
        << p.damping_newton_s_m << '|' << p.workspace_scale << '|' << p.left_handed << '|' << p.hand_script;
+  const RemoteSettings& r = settings.remote;
+  text << '|' << r.address << '|' << r.port << '|' << r.hosts.size() << '|' << r.quota_gb << '|' << r.file_gb << '|' << r.reserved_gb << '|'
+       << r.upload_hours;
   return text.str();
 }
 
@@ -96,6 +99,13 @@ friction = 0.1
 damping_newton_s_m = 0.4
 workspace_scale = 2.5
 hand = "left"
+[remote]
+listen = "[::1]:7443"
+hosts = ["station.example", "Station"]
+quota_gb = 20
+file_gb = 4
+reserved_gb = 1
+upload_hours = 48
 )";
 
 TEST(Settings, an_empty_file_keeps_every_default) { EXPECT_EQ(all_of(parsed("")), all_of(StationSettings{})); }
@@ -103,7 +113,8 @@ TEST(Settings, an_empty_file_keeps_every_default) { EXPECT_EQ(all_of(parsed(""))
 TEST(Settings, every_key_is_read) {
   EXPECT_EQ(all_of(parsed(kEveryKey)),
             "anaglyph|6.5|2DP-1|1920 1080 60|1|1|1|/dev/serial/by-id/usb-tracker|9600|0|1|4243|12.5|0.5|1 210.5 -15|61|lean|"
-            "1|1|/dev/serial/by-id/usb-servo|57600|7|4|1|1000|1.5|6|20|middle-orbit|64|30|1/dev/pts/9|6|500|0.1|0.4|2.5|1|push.hand");
+            "1|1|/dev/serial/by-id/usb-servo|57600|7|4|1|1000|1.5|6|20|middle-orbit|64|30|1/dev/pts/"
+            "9|6|500|0.1|0.4|2.5|1|push.hand|::1|7443|2|20|4|1|48");
 }
 
 TEST(Settings, names_choose_drivers_and_dialects) {
@@ -207,12 +218,33 @@ TEST(Settings, refuses_numbers_beyond_their_limits) {
                            {"haptic_pen", "stiffness_newton_m", "-1", "0", "5000", "5001"},
                            {"haptic_pen", "friction", "-0.1", "0", "1", "1.1"},
                            {"haptic_pen", "damping_newton_s_m", "-0.1", "0", "5", "5.1"},
-                           {"haptic_pen", "workspace_scale", "0", "0.0001", "10000", "10001"}}) {
+                           {"haptic_pen", "workspace_scale", "0", "0.0001", "10000", "10001"},
+                           {"remote", "quota_gb", "0", "1", "1000000", "1000001"},
+                           {"remote", "file_gb", "0", "1", "1000", "1001"},
+                           {"remote", "reserved_gb", "-1", "0", "1000000", "1000001"},
+                           {"remote", "upload_hours", "0", "1", "8760", "8761"}}) {
     const std::string key = std::string("[") + one.section + "]\n" + one.key + " = ";
     for (const char* taken : {one.low, one.high}) EXPECT_EQ(error_of(key + taken), "accepted") << key << taken;
     for (const char* refused : {one.below, one.above})
       EXPECT_THAT(error_of(key + refused), HasSubstr("it must be from ")) << key << refused;
   }
+}
+
+TEST(Settings, models_come_from_the_network_only_where_an_address_says_so) {
+  EXPECT_EQ(parse_settings("", "station.toml")->remote.port, 0);
+  const RemoteSettings remote = parse_settings("[remote]\nlisten = '[::]:7443'\nhosts = ['Station.Example']\n", "station.toml")->remote;
+  EXPECT_EQ(remote.address, "::");
+  EXPECT_EQ(remote.port, 7443);
+  EXPECT_EQ(remote.hosts, std::vector<std::string>{"station.example"});
+  EXPECT_EQ(error_of("[remote]\nlisten = '0.0.0.0:65535'\n"), "accepted");
+  EXPECT_EQ(error_of("[remote]\nlisten = ''\n"), "accepted");
+  for (const char* bad :
+       {"'7443'", "':7443'", "'0.0.0.0'", "'0.0.0.0:0'", "'0.0.0.0:65536'", "'0.0.0.0:x'", "'host:7443'", "'::1:7443'", "'[]:7443'", "5"})
+    EXPECT_THAT(error_of(std::string("[remote]\nlisten = ") + bad + "\n"),
+                HasSubstr("station.toml:2: remote.listen must be an address and a port"))
+        << bad;
+  for (const char* bad : {"'a'", "[5]", "['']", "['a b']", "['a/b']"})
+    EXPECT_THAT(error_of(std::string("[remote]\nhosts = ") + bad + "\n"), HasSubstr("remote.hosts must be a list of names")) << bad;
 }
 
 TEST(Settings, a_real_device_needs_its_own_port) {

@@ -1,5 +1,7 @@
 #include "ipc/store/manifest.h"
 
+#include <filesystem>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -97,6 +99,45 @@ TEST(PathOfASet, stays_beneath_its_folder) {
   for (std::size_t i = 1; i < kMaxSetDepth; ++i) deep += "/a";
   EXPECT_EQ(path_fault(deep), "");
   EXPECT_NE(path_fault(deep + "/a"), "");
+}
+
+/// 10,000 paths of pieces that lead out of folders: each is refused, or leads to where it seems to.
+TEST(PathOfASet, never_leads_elsewhere) {
+  const std::vector<std::string> pieces{"..",
+                                        ".",
+                                        "/",
+                                        "//",
+                                        "a",
+                                        "..a",
+                                        "b..",
+                                        "\\",
+                                        "%2e%2e",
+                                        "\xc0\xae",
+                                        "..\n",
+                                        "~",
+                                        "C:",
+                                        " ",
+                                        "...",
+                                        "../",
+                                        "/..",
+                                        "con",
+                                        "\xe2\x80\xa4\xe2\x80\xa4"};
+  std::mt19937_64 random(1);
+  std::size_t taken = 0;
+  for (int i = 0; i < 10'000; ++i) {
+    std::string path;
+    for (std::size_t count = 1 + random() % 8; count > 0; --count) {
+      path += pieces[random() % pieces.size()];
+      if (random() % 2 == 0) path += '/';
+    }
+    if (!path_fault(path).empty()) continue;
+    ++taken;
+    const std::filesystem::path as_path(path);
+    ASSERT_TRUE(as_path.is_relative()) << path;
+    ASSERT_EQ(as_path.lexically_normal(), as_path) << path;
+    for (const auto& part : as_path) ASSERT_NE(part, "..") << path;
+  }
+  EXPECT_GT(taken, 100u);
 }
 
 }  // namespace
