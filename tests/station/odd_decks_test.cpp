@@ -78,6 +78,12 @@ TEST_F(OddDecksTest, one_shell_is_seen_picked_fitted_and_repaired_without_a_step
   station_->settled_aim();
   EXPECT_EQ(station_->kiosk().last("generation "), generation);
   EXPECT_EQ(station_->item("undo")->state, "can") << "the selection";
+  EXPECT_TRUE(says("status pointed", "Repaired"));
+  station_->key("h");
+  EXPECT_TRUE(says("part 1", "hidden"));
+  EXPECT_EQ(state_of("status pointed").find("Repaired"), std::string::npos) << "that was the edit before";
+  station_->key("ctrl+z");
+  EXPECT_TRUE(says("part 1", "shown"));
   station_->key("ctrl+z");
   EXPECT_TRUE(says("undo", "can't"));
 }
