@@ -175,7 +175,8 @@ class Editing:
             return
         shots = self.out / "shots"
         shutil.rmtree(shots, ignore_errors=True)
-        command = [program("prismesh-kiosk"), "--profile", "mono", "--size", "1600x1000", "--headless-frames", "1", "--shots", shots]
+        command = [program("prismesh-kiosk"), "--profile", "mono", "--size", "1600x1000", "--headless-frames", "1", "--shots", shots,
+                   "--title", caption[0].upper() + caption[1:]]  # fmt: skip
         done = subprocess.run(list(map(str, command)), capture_output=True, text=True, stdin=subprocess.DEVNULL)
         if done.returncode != 0:
             raise Stop(f"prismesh-kiosk said: {done.stderr.strip()}")

@@ -65,7 +65,7 @@ def track(station):
     station.start_deviced()
     tell("\ndeviced   simulates an eye tracker (60 Hz, 1 mm of noise) and a prism servo; the kiosk draws for the predicted head")
     command = [program("prismesh-kiosk"), "--profile", "prism-mask", "--size", "1600x1000", "--headless-frames", PICTURES + 1,
-               "--pace", "2", "--shots", shots, "--trace"]  # fmt: skip
+               "--pace", "2", "--shots", shots, "--trace", "--title", "Drawn for the eyes that the simulated tracker sees"]  # fmt: skip
     log = station.out / "kiosk.log"
     with open(log, "w") as said:
         kiosk = subprocess.Popen(list(map(str, command)), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=said, text=True)

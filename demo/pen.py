@@ -86,7 +86,7 @@ def push_and_pull(station, out, settings):
     """Plays the hand's script once. Returns the record, the edits that were made, and the last that the kiosk said."""
     before = session("state")["generations"]
     kiosk = subprocess.Popen(list(map(str, [program("prismesh-kiosk"), "--profile", "mono-left", "--size", "1200x800", "--trace",
-                                            "--headless-frames", PICTURES, "--pace", PACE_S, "--shots", out])),
+                                            "--headless-frames", PICTURES, "--pace", PACE_S, "--shots", out, "--title", "A simulated pen touches, takes and pulls the sheet"])),
                              stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)  # fmt: skip
     try:
         next((line for line in kiosk.stdout if line.startswith("shot ")), None)

@@ -91,6 +91,7 @@ Result<void> run(const AppOptions& options) {
   what.fixed_eyes_mm = options.fixed_eyes_mm;
   what.panel_latency_ms = settings->display.latency_ms;
   what.follows_others = options.follow;
+  what.title = options.title;
   what.trace = options.trace;
   if (options.headless_frames > 0) return run_headless(options, what);
   const WindowOptions window = window_options(options, settings->display);

@@ -23,6 +23,7 @@ struct AppOptions {
   int headless_frames = 0;                              ///< > 0: no window; the program writes this number of pictures to `shots` and ends
   double pace_seconds = 0;                              ///< between those pictures
   std::filesystem::path shots;
+  std::string title{};     ///< says at the top of the view what is shown
   bool calibrate = false;  ///< run the display's calibration instead
   bool follow = false;     ///< move together with other kiosks that follow
   bool trace = false;      ///< write a line for each event to standard output

@@ -60,6 +60,7 @@ int run_interactive(int argc, char** argv) {
   auto* folder = app.add_option("--shots", shots, "Folder for those pictures")->option_text("DIR");
   frames->needs(folder);
   folder->needs(frames);
+  app.add_option("--title", options.title, "A line at the top of the view that says what is shown")->option_text("TEXT");
   app.add_flag("--calibrate", options.calibrate, "Lead through the calibration of this display; covers it")->excludes(frames);
   app.add_flag("--follow", options.follow, "Move together with other kiosks of this model server that follow");
   app.add_flag("--trace", options.trace, "Say what happens on standard output, a line each (docs/kiosk.md)");

@@ -183,7 +183,8 @@ void PanelArrangement::build(ToolContext& context, std::span<const input::MouseB
   const link::Connection& connection = context.link.connection;
   const link::ServerProgress& progress = connection.progress();
   const bool document = context.shown.snapshot != nullptr;
-  const std::string guidance = context.tools.guidance();
+  std::string guidance = context.tools.guidance();
+  if (guidance.empty()) guidance = context.options.title;
   layout.places = panels::place_panels(layout.picture, ImGui::GetFontSize(), kept_.now());
   const panels::Place view = layout.view();
   layout.bottom = static_cast<double>(view.bottom() - kMargin);
@@ -215,11 +216,14 @@ void PanelArrangement::build_dock(ToolContext& context, PanelLayout& layout) {
   const bool document = context.shown.snapshot != nullptr;
   panels::begin_docked("Dock", places.upper);
   const float tabs = push_tab_padding(context);
+  std::string tab_shown;
   if (ImGui::BeginTabBar("tabs", ImGuiTabBarFlags_FittingPolicyScroll)) {
     const auto tab = [&](const char* name, const std::function<void()>& draw) {
-      const bool shown = ImGui::BeginTabItem(name);
+      const bool kept = !tab_brought_ && kept_.now().tab == name;
+      const bool shown = ImGui::BeginTabItem(name, nullptr, kept ? ImGuiTabItemFlags_SetSelected : ImGuiTabItemFlags_None);
       panels::note_item(layout, std::string("tab ") + name, shown ? "on" : "off");
       if (!shown) return;
+      tab_shown = name;
       ImGui::PopStyleVar(2);
       ImGui::BeginChild(name);
       if (document) draw();
@@ -234,6 +238,7 @@ void PanelArrangement::build_dock(ToolContext& context, PanelLayout& layout) {
     });
     ImGui::EndTabBar();
   }
+  keep_tab(tab_shown);
   ImGui::PopStyleVar(2);
   ImGui::End();
   panels::begin_docked("In hand", places.lower);
@@ -270,6 +275,16 @@ void PanelArrangement::build_menu(ToolContext& context, PanelLayout& layout) {
     panels::note_item(layout, "entry " + std::string(binding.meaning), "");
   }
   ImGui::EndPopup();
+}
+
+/// A tab that was kept is shown a layout after it was asked for.
+void PanelArrangement::keep_tab(const std::string& shown) {
+  panels::Arrangement wanted = kept_.now();
+  if (!tab_brought_ && !wanted.tab.empty() && shown != wanted.tab && tab_tries_++ < 4) return;
+  tab_brought_ = true;
+  if (shown.empty() || shown == wanted.tab) return;
+  wanted.tab = shown;
+  kept_.set(wanted);
 }
 
 void PanelArrangement::follow_borders(PanelLayout& layout) {

@@ -22,12 +22,14 @@ class PanelArrangement {
   void build_dock(toolkit::ToolContext& context, panels::PanelLayout& layout);
   void build_box(toolkit::ToolContext& context, panels::PanelLayout& layout);
   void build_menu(toolkit::ToolContext& context, panels::PanelLayout& layout);
+  void keep_tab(const std::string& shown);
   void follow_borders(panels::PanelLayout& layout);
 
   toolkit::OpenPanels::Dialog shown_dialog_;
   std::optional<input::Pixel> menu_at_;  ///< of the menu that is open under the pointer
   KeptArrangement kept_;
-  std::string tab_ = "Parts";
+  bool tab_brought_ = false;  ///< the kept tab was shown, or can't be
+  int tab_tries_ = 0;
 };
 
 }  // namespace prismesh::kiosk

@@ -27,6 +27,7 @@ struct StationOptions {
   double panel_latency_ms = 10;
   bool trace = false;
   bool follows_others = false;  ///< moves together with other kiosks that do
+  std::string title{};          ///< says at the top of the view what is shown
 };
 
 /// Between the eyes while nobody is tracked, mm from the screen's centre.

@@ -179,8 +179,8 @@ Result<void> WindowedKiosk::take_text(const display::TextTyped& event) {
   return {};
 }
 
-/// Plain letters: those that edit are held until it is known that no word is being typed, which goes to the search. True: nothing is left
-/// to do.
+/// Plain letters: those that edit are held until it is known that no word is being typed, which goes to the search. One that follows two
+/// letters at once ends or goes on with a word. True: nothing is left to do.
 Result<bool> WindowedKiosk::take_letter(const display::KeyChanged& event, const input::KeyBinding& binding) {
   const bool letter = event.key >= display::letter('A') && event.key <= display::letter('Z');
   const bool plain = letter && !event.modifiers.ctrl && !event.modifiers.alt && !event.modifiers.shift;
@@ -189,7 +189,7 @@ Result<bool> WindowedKiosk::take_letter(const display::KeyChanged& event, const 
   if (!follows) word_.clear();
   last_letter_ns_ = now;
   const bool edits = binding.asks_for_edit() && !binding.opens_field();
-  const bool word = follows && held_;
+  const bool word = follows && (held_ || (edits && word_.size() >= 2));  // two letters may be two keys
   if (plain && !word) word_ += lower(event.key);
   if (word) {
     held_.reset();

@@ -201,6 +201,13 @@ std::size_t DocumentKeeper::same_drop(const Prepared& prepared) const {
   return 0;
 }
 
+/// Whether relaxing or repairing found nothing to change: that is no state of the history.
+bool DocumentKeeper::did_nothing(const Generation& current, const Edit& edit, const Prepared& prepared) const {
+  const EditReport& done = prepared.report;
+  return kind_of(edit).group == EditGroup::mending && done.nodes_moved + done.elements_added + done.elements_removed == 0 &&
+         !differs(current, *prepared.next);
+}
+
 /// Journals the step, then commits it; after an error everything is as before. `recorded`: the step of `recorded`; null: it has none.
 Result<void> DocumentKeeper::keep(const Edit& edit, const Prepared* recorded, const Prepared& prepared) {
   OpenDocument& open = *open_;
@@ -234,6 +241,7 @@ Result<EditReport> DocumentKeeper::edit(const Edit& edit, const Progress& progre
   Result<Prepared> prepared = if_memory_allows([&] { return prepare(open.document, *whole, progress, clock); }, "");
   if (!prepared) return fail(std::move(prepared.error()));
   EditReport report = prepared->report;
+  if (did_nothing(open.document.current(), *whole, *prepared)) return report;
   const bool push = prepared->step == Prepared::Step::push;
   const bool follows = push || own_step(prepared->step) == prepared->next.get();
   // A delta can add nodes and shells, but can't take a topology change back.

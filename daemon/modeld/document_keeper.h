@@ -124,6 +124,8 @@ class DocumentKeeper {
   void forget(ReadySave& save);
   Result<void> end_unfinished_save();
   Result<void> begin_journal_anew();
+  bool did_nothing(const mesh::document::Generation& current, const mesh::document::Edit& edit,
+                   const mesh::document::Prepared& prepared) const;
   Result<void> keep(const mesh::document::Edit& edit, const mesh::document::Prepared* recorded, const mesh::document::Prepared& prepared);
   Result<mesh::document::EditReport> take_branch(const mesh::document::TakeBranch& edit, Clock* clock);
   std::optional<std::uint64_t> recorded_branch(const mesh::document::Branch& branch) const;

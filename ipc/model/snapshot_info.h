@@ -42,6 +42,8 @@ struct SnapshotPart {
   double target_size = 1;
   mesh::quality::SizeFrom size_from = mesh::quality::SizeFrom::part;
   std::string criteria{};  ///< its own: a built-in name or a file; empty: the deck's
+  float thinnest = 0;      ///< of its shells, deck's length unit; 0: not all have a thickness
+  float thickest = 0;
 };
 
 struct SnapshotInfo {

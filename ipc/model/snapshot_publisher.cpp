@@ -8,6 +8,7 @@
 #include <optional>
 #include <tuple>
 #include <unordered_map>
+#include <utility>
 
 #include "ipc/model/snapshot_table.h"
 #include "mesh/document/cluster_signs.h"
@@ -15,6 +16,7 @@
 #include "mesh/document/shell_damage.h"
 #include "mesh/model/element_lines.h"
 #include "mesh/model/topology_change.h"
+#include "mesh/quality/shell_properties.h"
 
 namespace prismesh::ipc {
 
@@ -82,6 +84,7 @@ struct PerModel {
   std::shared_ptr<const mesh::TopologyChange> topology_change;
   std::shared_ptr<const std::vector<mesh::Part>> parts;
   std::vector<std::uint32_t> shells_of_part;
+  std::vector<std::array<float, 2>> thicknesses_of_part;
 };
 
 bool same_chunks(const mesh::ChunkedArray<mesh::PartIndex>& a, const mesh::ChunkedArray<mesh::PartIndex>& b) {
@@ -89,6 +92,24 @@ bool same_chunks(const mesh::ChunkedArray<mesh::PartIndex>& a, const mesh::Chunk
   for (std::size_t c = 0; c < a.chunk_count(); ++c)
     if (!a.shares_chunk(b, c)) return false;
   return true;
+}
+
+/// The smallest and largest thickness of each part's shells; zeros where a shell has none.
+std::vector<std::array<float, 2>> thicknesses(const mesh::Model& model) {
+  std::vector<std::array<float, 2>> found(model.parts ? model.parts->size() : 0, {0, 0});
+  std::vector<std::uint8_t> known(found.size(), 0);
+  for (std::size_t s = 0; s < model.shell_count(); ++s) {
+    const mesh::PartIndex part = model.shell_parts[s];
+    if (part.value >= found.size() || model.is_removed(mesh::ShellIndex(s))) continue;
+    const float thickness = mesh::quality::thickness_of(model, s);
+    auto& [thinnest, thickest] = found[part.value];
+    const bool first = std::exchange(known[part.value], std::uint8_t{1}) == 0;
+    thinnest = first ? thickness : std::min(thinnest, thickness);
+    thickest = first ? thickness : std::max(thickest, thickness);
+  }
+  for (auto& range : found)
+    if (range[0] <= 0) range = {0, 0};
+  return found;
 }
 
 std::vector<std::uint32_t> count_shells(const mesh::Model& model) {
@@ -132,6 +153,7 @@ struct SnapshotPublisher::Impl {
       per_model.topology_change = model.topology_change;
       per_model.shell_parts = model.shell_parts;
       per_model.shells_of_part = count_shells(model);
+      per_model.thicknesses_of_part = thicknesses(model);
     }
   }
 
@@ -297,6 +319,7 @@ struct SnapshotPublisher::Impl {
       const bool has_state = generation.parts && p < generation.parts->size();
       const mesh::document::PartState state = has_state ? (*generation.parts)[p] : mesh::document::PartState{};
       ipc::SnapshotPart part{parts[p].id, parts[p].name, state.hidden, state.locked, per_model.shells_of_part[p], info.target_size, {}, {}};
+      std::tie(part.thinnest, part.thickest) = std::tie(per_model.thicknesses_of_part[p][0], per_model.thicknesses_of_part[p][1]);
       if (generation.judging && p < generation.judging->parts.size()) {
         const mesh::quality::PartCriteria& judged = generation.judging->by_part.of(mesh::PartIndex(p));
         part.target_size = judged.target_size;

@@ -36,6 +36,8 @@ void put_info(ByteWriter& out, const SnapshotInfo& info) {
     out.put(part.target_size);
     out.put(static_cast<std::uint8_t>(part.size_from));
     out.put(part.criteria);
+    out.put(part.thinnest);
+    out.put(part.thickest);
   }
 }
 
@@ -55,10 +57,10 @@ SnapshotInfo get_info(ByteReader& in) {
   info.can_undo = in.get<std::uint8_t>() != 0;
   info.can_redo = in.get<std::uint8_t>() != 0;
   info.changed = in.get<std::uint8_t>() != 0;
-  // A part takes 39 bytes at least: id, length of the name, two flags, number of shells, target size and where it comes from, length of the
-  // criteria.
+  // A part takes 47 bytes at least: id, length of the name, two flags, number of shells, target size and where it comes from, length of the
+  // criteria, thicknesses.
   const auto parts = in.get<std::uint64_t>();
-  for (std::uint64_t i = 0; in.holds(parts - i, 39) && i < parts; ++i) {
+  for (std::uint64_t i = 0; in.holds(parts - i, 47) && i < parts; ++i) {
     SnapshotPart part;
     part.id = in.get<std::int64_t>();
     part.name = in.text();
@@ -68,6 +70,8 @@ SnapshotInfo get_info(ByteReader& in) {
     part.target_size = in.get<double>();
     part.size_from = static_cast<mesh::quality::SizeFrom>(std::min<std::uint8_t>(in.get<std::uint8_t>(), 2));
     part.criteria = in.text();
+    part.thinnest = in.get<float>();
+    part.thickest = in.get<float>();
     info.parts.push_back(std::move(part));
   }
   return info;

@@ -13,6 +13,8 @@ void LinkNotices::tell_edit(const std::string& what, const mesh::document::EditR
     result_of_ = number_.value();
     ++results_;
     trace_.line("result " + words);
+  } else {
+    result_.clear();  // it is of an edit before
   }
   if (auto notice = notice_of_notes(report, words)) say(std::move(*notice));
 }

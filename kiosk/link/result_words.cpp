@@ -72,11 +72,16 @@ std::string result_words(const std::string& what, const EditReport& report, std:
   std::string words = !what.empty() ? what : report.notes.empty() ? capital(report.edit) : capital(report.notes.front());
   // An undo of a selection or of hiding changes no figures.
   if (step && report.nodes_moved + report.elements_added + report.elements_removed == 0) return words;
+  const bool improves = kind != nullptr && kind->group == EditGroup::mending;
+  if (improves && report.nodes_moved + report.elements_added + report.elements_removed == 0) {
+    words += ": nothing was changed";
+    return report.after.warn + report.after.fail == 0 ? words
+                                                      : words + fmt::format("; warn {}; fail {}", report.after.warn, report.after.fail);
+  }
   words += ": " + counted(report.nodes_moved, "node");
   if (report.largest_move) words += ", at most " + length(*report.largest_move, unit);
   if (report.elements_added + report.elements_removed > 0)
     words += fmt::format("; {} made, {} removed", counted(report.elements_added, "element"), report.elements_removed);
-  const bool improves = kind != nullptr && kind->group == EditGroup::mending;
   if (improves || report.before.warn != report.after.warn)
     words += fmt::format("; warn {} \u2192 {}", report.before.warn, report.after.warn);
   words += fmt::format("; fail {} \u2192 {}", report.before.fail, report.after.fail);

@@ -35,8 +35,14 @@ void menus(std::span<const KeyBinding> all, const std::function<void(input::Menu
     const bool open = ImGui::BeginMenu(input::kMenuNames[m].data());
     if (!open) note_item(layout, "menu " + std::string(input::kMenuNames[m]), "");
     if (!open) continue;
-    for (const KeyBinding& binding : all)
-      if (static_cast<std::size_t>(binding.menu) == m) menu_row(binding, layout);
+    std::string_view owner;
+    for (const KeyBinding& binding : all) {
+      if (static_cast<std::size_t>(binding.menu) != m) continue;
+      // What one tool does stands together.
+      if (!owner.empty() && owner != binding.command.owner) ImGui::Separator();
+      owner = binding.command.owner;
+      menu_row(binding, layout);
+    }
     more(static_cast<input::Menu>(m));
     ImGui::EndMenu();
   }
@@ -64,6 +70,14 @@ void deck_and_state(const BarFacts& facts, const BarKeys& keys, const Place& roo
   if (!facts.changed) ImGui::EndDisabled();
   if (facts.changed) hint(keys.save);
   note_item(layout, "save", facts.changed ? "modified" : "saved");
+}
+
+/// Three dots in the middle: the border can be dragged.
+void draw_grip(ImDrawList& list, const Place& place) {
+  const bool upright = place.height > place.width;
+  const ImVec2 middle(place.x + place.width / 2, place.y + place.height / 2);
+  for (const float at : {-0.6F * kGrid, 0.0F, 0.6F * kGrid})
+    list.AddCircleFilled(upright ? ImVec2(middle.x, middle.y + at) : ImVec2(middle.x + at, middle.y), 0.2F * kGrid, kFaintInk);
 }
 
 }  // namespace
@@ -233,6 +247,7 @@ std::optional<Arrangement> borders(const Arrangement& now, PanelLayout& layout) 
     ImGui::Begin(name, nullptr, kPanelFlags);
     ImGui::InvisibleButton("border", ImVec2(place.width, place.height));
     const bool active = ImGui::IsItemActive(), hovered = ImGui::IsItemHovered();
+    draw_grip(*ImGui::GetWindowDrawList(), place);
     if (active || hovered) {
       ImGui::SetMouseCursor(cursor);
       ImGui::GetWindowDrawList()->AddRectFilled(ImVec2(place.x, place.y), ImVec2(place.right(), place.bottom()),

@@ -5,12 +5,39 @@
 
 #include <fmt/format.h>
 #include <imgui.h>
+#include <imgui_internal.h>
 
 #include "kiosk/panels/text.h"
 
 namespace prismesh::kiosk::panels {
 
 using notices::Notice;
+
+namespace {
+
+/// From the cursor to `end`. A long report scrolls, so that it leaves the model in sight.
+void notice_text(const std::string& text, float end) {
+  constexpr float kMaxLines = 4;
+  const float width = end - ImGui::GetCursorPosX();
+  // What a list can draw is limited; nobody reads more here.
+  constexpr std::size_t kMaxBytes = 6000;
+  const std::string told = printable_lines(text.size() > kMaxBytes ? text.substr(0, kMaxBytes) + " .." : text);
+  const auto lines_within = [&](float room) {
+    return break_at_spaces(told, room,
+                           [](std::string_view piece) { return ImGui::CalcTextSize(piece.data(), piece.data() + piece.size()).x; });
+  };
+  const std::string all = lines_within(width);
+  const float line = ImGui::GetTextLineHeight();
+  const bool scrolls = ImGui::CalcTextSize(all.c_str(), nullptr, false, width).y > (kMaxLines + 0.5F) * line;
+  if (scrolls) ImGui::BeginChild("report", ImVec2(width, (kMaxLines + 0.5F) * line));
+  // For a path that is wider than the panel; left alone the toolkit would break numbers at their point.
+  ImGui::PushTextWrapPos(scrolls ? 0 : end);
+  ImGui::TextUnformatted((scrolls ? lines_within(ImGui::GetContentRegionAvail().x) : all).c_str());
+  ImGui::PopTextWrapPos();
+  if (scrolls) ImGui::EndChild();
+}
+
+}  // namespace
 
 NoticeReply notice_panel(const NoticeFacts& facts, const Place& room, const NoticePlace& place) {
   NoticeReply reply = NoticeReply::none;
@@ -28,11 +55,10 @@ NoticeReply notice_panel(const NoticeFacts& facts, const Place& room, const Noti
   const auto width_of = [](const char* label) { return ImGui::CalcTextSize(label).x + 2 * ImGui::GetStyle().FramePadding.x; };
   const float buttons = facts.notice.lists_warnings ? std::max(width_of(read.c_str()), width_of(list)) : width_of(read.c_str());
   const float buttons_at = ImGui::GetWindowContentRegionMax().x - buttons, end = buttons_at - 2 * kGrid;
-  ImGui::PushTextWrapPos(end);  // for a path that is wider than the panel; left alone the toolkit would break numbers at their point
-  ImGui::TextUnformatted(break_at_spaces(printable_lines(facts.notice.text), end - ImGui::GetCursorPosX(), [](std::string_view piece) {
-                           return ImGui::CalcTextSize(piece.data(), piece.data() + piece.size()).x;
-                         }).c_str());
-  ImGui::PopTextWrapPos();
+  // A dialog or a list that was opened meanwhile would cover it; a menu is about to be chosen from.
+  if (!ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel))
+    ImGui::BringWindowToDisplayFront(ImGui::GetCurrentWindow());
+  notice_text(facts.notice.text, end);
   ImGui::SameLine();
   ImGui::SetCursorPosX(buttons_at);
   ImGui::BeginGroup();

@@ -21,7 +21,7 @@ Arrangement within_limits(const Arrangement& wanted) {
   const Arrangement usual;
   const float dock = std::isfinite(wanted.dock_ems) ? wanted.dock_ems : usual.dock_ems;
   const float upper = std::isfinite(wanted.upper_share) ? wanted.upper_share : usual.upper_share;
-  return {std::clamp(dock, kNarrowestDockEms, kWidestDockEms), std::clamp(upper, kMinHalfShare, 1 - kMinHalfShare)};
+  return {std::clamp(dock, kNarrowestDockEms, kWidestDockEms), std::clamp(upper, kMinHalfShare, 1 - kMinHalfShare), wanted.tab};
 }
 
 Places place_panels(display::PixelSize picture, float em, const Arrangement& arrangement) {

@@ -1,6 +1,8 @@
 // Where the docked panels stand, and what they leave to the view. No ImGui.
 #pragma once
 
+#include <string>
+
 #include "kiosk/display/window.h"
 
 namespace prismesh::kiosk::panels {
@@ -19,6 +21,7 @@ struct Place {
 struct Arrangement {
   float dock_ems = 18.5F;    ///< the dock's width
   float upper_share = 0.5F;  ///< of the dock's height: parts, history and model above the tool
+  std::string tab{};         ///< the one that is shown above; empty: the first
   bool operator==(const Arrangement&) const = default;
 };
 /// All of a picture.

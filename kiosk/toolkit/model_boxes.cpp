@@ -1,5 +1,7 @@
 #include "kiosk/toolkit/model_boxes.h"
 
+#include <algorithm>
+
 #include "kiosk/toolkit/picking.h"
 
 namespace prismesh::kiosk::toolkit {
@@ -18,7 +20,17 @@ stereo::Box turned_box_of_selection(const ToolContext& context) {
   const Eigen::Matrix3d turn = context.view.view.rotation.toRotationMatrix();
   for (std::size_t n = 0; n < shown->node_count(); ++n)
     if (shown->selected(n)) add_turned(box, turn, shown->position(n));
-  return box;
+  if (box.empty()) return box;
+  stereo::Box around = box;
+  for (std::size_t s = 0; s < shown->shell_count(); ++s) {
+    const mesh::ShellNodes& shell = shown->shell(s);
+    const auto is_there = [&](mesh::NodeIndex node) { return node.valid() && node.value < shown->node_count(); };
+    if (!std::ranges::any_of(shell.node, [&](mesh::NodeIndex node) { return is_there(node) && shown->selected(node.value); })) continue;
+    for (const mesh::NodeIndex node : shell.node)
+      if (is_there(node)) add_turned(around, turn, shown->position(node.value));
+  }
+  // A node has no size of its own to be fitted.
+  return (box.high - box.low).norm() < 0.5 * (around.high - around.low).norm() ? around : box;
 }
 
 stereo::Box turned_box_of_part(const ToolContext& context, mesh::PartIndex part) {

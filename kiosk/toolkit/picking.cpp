@@ -115,6 +115,9 @@ PointedAt pointed_at(const ToolContext& context, const std::optional<Pixel>& pix
   if (part.value >= info.parts.size()) return found;
   const ipc::SnapshotPart& its = info.parts[part.value];
   found.words += fmt::format("   part {} {}", its.id, panels::printable(its.name));
+  if (its.thinnest > 0)
+    found.words += fmt::format("  {}{} {} thick", readable(its.thinnest, 4),
+                               its.thickest > its.thinnest ? " to " + readable(its.thickest, 4) : "", info.length_unit);
   return found;
 }
 
@@ -127,6 +130,19 @@ std::optional<mesh::NodeIndex> node_with_id(const ToolContext& context, std::int
     if (found != ids.end()) return mesh::NodeIndex(c * mesh::kChunkSize + static_cast<std::size_t>(found - ids.begin()));
   }
   return std::nullopt;
+}
+
+bool is_used(const ToolContext& context, mesh::NodeIndex node) {
+  const auto& shown = context.shown.snapshot;
+  if (!shown) return false;
+  for (std::size_t c = 0; c < shown->chunk_count(ipc::SnapshotArray::shell_nodes); ++c)
+    for (const mesh::ShellNodes& shell : shown->chunk<mesh::ShellNodes>(ipc::SnapshotArray::shell_nodes, c))
+      if (std::ranges::find(shell.node, node) != std::end(shell.node)) return true;
+  for (std::size_t c = 0; c < shown->chunk_count(ipc::SnapshotArray::line_nodes); ++c) {
+    const auto ends = shown->chunk<mesh::NodeIndex>(ipc::SnapshotArray::line_nodes, c);
+    if (std::ranges::find(ends, node) != ends.end()) return true;
+  }
+  return false;
 }
 
 std::optional<mesh::ShellIndex> shell_with_id(const ToolContext& context, std::int64_t id) {

@@ -39,6 +39,8 @@ std::optional<mesh::NodeIndex> shown_node_at(const ToolContext& context, const i
 std::optional<mesh::ShellIndex> shell_at(const ToolContext& context, const std::optional<input::Pixel>& pixel);
 
 /// What is under the pointer, in words too.
+/// Whether an element uses the node. Costs a pass over the elements.
+bool is_used(const ToolContext& context, mesh::NodeIndex node);
 PointedAt pointed_at(const ToolContext& context, const std::optional<input::Pixel>& pixel);
 
 /// The node with an id, also one that an edit removed; nothing if the shown snapshot hasn't got it. Costs a pass over the ids.

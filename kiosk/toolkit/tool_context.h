@@ -70,6 +70,7 @@ struct ToolOptions {
   std::filesystem::path commands_used{};  ///< file of the commands that were found; empty: none
   std::filesystem::path decks_opened{};   ///< file of the decks that were opened; empty: none
   bool follows_others = false;            ///< moves together with other kiosks that do
+  std::string title{};                    ///< shown where no tool guides the user
 };
 
 struct ToolContext {

@@ -2,11 +2,16 @@
 #include "mesh/document/edit_kinds.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <set>
+#include <string>
+#include <vector>
 
 #include "base/counted.h"
 #include "mesh/document/apply.h"
 #include "mesh/document/branches.h"
 #include "mesh/document/history.h"
+#include "mesh/document/part_marks.h"
 #include "mesh/model/node_set.h"
 #include "mesh/model/topology_change.h"
 
@@ -48,6 +53,29 @@ Result<Prepared> prepare_branch(const Document& document, std::uint64_t number) 
   return prepared;
 }
 
+/// Relaxing and repairing go by what is at fault, also where nobody sees it.
+void say_hidden(const Generation& before, const Generation& after, EditReport& report) {
+  const std::vector<std::uint8_t> hidden = hidden_parts(after);
+  if (hidden.empty()) return;
+  std::set<std::int64_t> changed;
+  const auto add = [&](ShellIndex shell) {
+    const PartIndex part = after.model.shell_parts[shell.value];
+    if (part.valid() && part.value < hidden.size() && hidden[part.value] != 0) changed.insert((*after.model.parts)[part.value].id);
+  };
+  const Changes changes = changes_between(before.model, after.model);
+  for (const auto& shells : {changes.added_shells, changes.removed_shells, changes.reshaped_shells}) std::ranges::for_each(shells, add);
+  // The nodes of a part that is seen too belong to both.
+  for (const ShellIndex shell : shells_touching(before.model, moved_nodes(before.model, after.model))) add(shell);
+  if (changed.empty()) return;
+  constexpr std::size_t kNamed = 6;
+  std::string names;
+  std::size_t named = 0;
+  for (const std::int64_t id : changed)
+    if (named++ < kNamed) names += (names.empty() ? "" : ", ") + std::to_string(id);
+  if (changed.size() > kNamed) names += ", ..";
+  report.notes.push_back((changed.size() == 1 ? "a hidden part was changed too: " : "hidden parts were changed too: ") + names);
+}
+
 void say_dropped(const Document& document, Prepared& prepared) {
   if (prepared.drop_branches > 0)
     prepared.report.notes.push_back("the oldest " +
@@ -76,6 +104,7 @@ Result<Prepared> prepare_push(const Document& document, const E& edit, std::stri
       done.stop_at = StopPoint{stopped->attempt, stopped->steps};
       prepared.as_done = std::move(done);
     }
+  if constexpr (std::is_same_v<E, Repair> || std::is_same_v<E, Relax>) say_hidden(current, *next, prepared.report);
   next->number = document.next_number;
   next->made_by = edit_name;
   next->own_bytes = own_bytes(current, *next);

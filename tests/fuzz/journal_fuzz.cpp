@@ -103,9 +103,10 @@ void fuzz_steps(std::string_view text, const std::string& header) {
   constexpr std::size_t kSteps = 40;
   for (const char each : text.substr(0, kSteps)) {
     const auto bits = static_cast<unsigned char>(each);
-    const std::string record = record_text({++number, R"({"edit":"lock"})", static_cast<Prepared::Step>(bits & 3), (bits >> 2) & 1U,
-                                            (bits & 3) == 0 ? "AgAAAAAAAAAAAAA=" : "", 0, (bits >> 3) & 1U, bits >> 4},
-                                           check);
+    const std::string record =
+        record_text({++number, R"({"edit":"lock"})", static_cast<Prepared::Step>(bits & 3), (bits >> 2) & 1U,
+                     (bits & 3) == 0 ? "AgAAAAAAAAAAAAA=" : "", 0, (bits >> 3) & 1U, static_cast<std::uint64_t>(bits >> 4)},
+                    check);
     check = check_in(record);
     journal += record;
   }

@@ -69,7 +69,7 @@ TEST(KeptArrangement, is_read_again_and_a_broken_file_costs_only_that) {
   const std::filesystem::path file = folder / "arrangement.toml";
   {
     KeptArrangement kept(file);
-    kept.set({24, 0.3F});
+    kept.set({24, 0.3F, "History"});
     kept.keep();
     kept.set({1000, 2});
     EXPECT_EQ(kept.now(), within_limits({1000, 2}));
@@ -77,7 +77,8 @@ TEST(KeptArrangement, is_read_again_and_a_broken_file_costs_only_that) {
   const KeptArrangement again(file);
   EXPECT_NEAR(again.now().dock_ems, 24, 0.01);
   EXPECT_NEAR(again.now().upper_share, 0.3, 0.001);
-  for (const char* broken : {"[dock", "dock = 3", "[dock]\nwidth = \"x\"\nupper_share = nan", "\xff\xfe"}) {
+  EXPECT_EQ(again.now().tab, "History");
+  for (const char* broken : {"[dock", "dock = 3", "[dock]\nwidth = \"x\"\nupper_share = nan\ntab = 'a\"'", "\xff\xfe"}) {
     std::ofstream(file) << broken;
     EXPECT_EQ(KeptArrangement(file).now(), Arrangement{}) << broken;
   }

@@ -107,9 +107,10 @@ class PathBox : public panels::GuiTest {
     gui_->feed(display::TextTyped{text});
     lay_out();
   }
-  std::optional<std::string> click(const std::string& name) {
-    const auto item = std::ranges::find(items_, "file " + name, &panels::ScreenItem::name);
-    if (item == items_.end()) return "no row " + name;
+  std::optional<std::string> click(const std::string& name) { return click_item("file " + name); }
+  std::optional<std::string> click_item(const std::string& name) {
+    const auto item = std::ranges::find(items_, name, &panels::ScreenItem::name);
+    if (item == items_.end()) return "no " + name;
     const double x = item->place.x + 30, y = item->place.y + 4;
     gui_->feed(display::PointerMoved{x, y, {}});
     lay_out();
@@ -126,6 +127,15 @@ class PathBox : public panels::GuiTest {
   PathEntry entry_;
   std::vector<panels::ScreenItem> items_;
 };
+
+TEST_F(PathBox, has_a_button_that_opens_and_one_that_does_not) {
+  open(folder_ / "car.k");
+  type("car.k");
+  EXPECT_EQ(click_item("path ok"), folder_ / "car.k");
+  EXPECT_FALSE(entry_.cancelled);
+  EXPECT_EQ(click_item("path cancel"), std::nullopt);
+  EXPECT_TRUE(entry_.cancelled);
+}
 
 TEST_F(PathBox, is_used_by_arrow_keys_tab_and_enter) {
   open(folder_ / "car.k");

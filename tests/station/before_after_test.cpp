@@ -1,6 +1,8 @@
 // C shows the state before the last edit and the newest one in turn. It is a view: what is saved, undone and edited is always the newest.
 #include <string>
 
+#include <unistd.h>
+
 #include <gtest/gtest.h>
 
 #include "tests/station/station_test_case.h"
@@ -56,6 +58,7 @@ TEST_F(BeforeAfterTest, an_edit_asked_for_in_the_older_state_shows_the_newest_an
   };
   for (const char* key : {"ctrl+z", "ctrl+y", "g", "n", "e", "i", "h", "shift+h", "u", "ctrl+l", "ctrl+e", "ctrl+d", "r"}) {
     look_at_the_state_before();
+    ::usleep(250'000);  // letters that follow each other faster are a word
     station_->key(key);
     refused(key);
   }

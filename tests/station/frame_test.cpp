@@ -197,6 +197,14 @@ TEST_F(FrameTest, a_word_typed_beside_a_field_edits_nothing_and_goes_to_the_sear
   for (int of_two = 0; of_two < 2; ++of_two) station_->key("g");
   EXPECT_FALSE(station_->kiosk().wait_for("generation ").empty());
   EXPECT_FALSE(station_->kiosk().wait_for("generation ").empty()) << "the same letter twice is that key twice";
+  station_->settled_aim();
+  const std::string grown = station_->kiosk().last("generation ");
+  station_->kiosk().skip_lines();
+  station_->type("car");  // the last letter would select a region
+  EXPECT_FALSE(station_->kiosk().wait_for("item \"find field\"").empty());
+  station_->key("Escape");
+  station_->settled_aim();
+  EXPECT_EQ(station_->kiosk().last("generation "), grown);
 }
 
 TEST_F(FrameTest, an_id_is_flown_to_and_marked) {

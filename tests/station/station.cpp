@@ -208,6 +208,7 @@ void Station::drag_rectangle(double from_x, double from_y, double to_x, double t
   drag(from_x, from_y, to_x, to_y);
 }
 void Station::destroy_window() { xdotool({"windowclose", window_}); }
+void Station::resize_window(int width, int height) { xdotool({"windowsize", window_, std::to_string(width), std::to_string(height)}); }
 void Station::key(const std::string& keys) { xdotool({"key", keys}); }
 void Station::type(const std::string& text) { xdotool({"type", "--delay", "2", text}); }
 

@@ -70,6 +70,7 @@ class Station {
   void drag_rectangle(double from_x, double from_y, double to_x, double to_y);
   void key(const std::string& keys);
   void destroy_window();  ///< as a client that doesn't ask
+  void resize_window(int width, int height);
   void type(const std::string& text);
 
   // --- the kiosk's output ---

@@ -48,9 +48,7 @@ class X11Window final : public Window {
   DesktopPosition position() const override { return position_; }
   std::optional<Monitor> monitor() override { return gone_ ? std::nullopt : monitor_at(display_, root(), position_.x, position_.y, size_); }
   void finish() override { eglWaitClient(); }
-  void present() override {
-    if (!gone_) eglSwapBuffers(egl_, surface_);
-  }
+  void present() override;
   std::optional<std::int64_t> last_refresh_ns() override;
   void show_pointer(bool shown) override;
   void set_fullscreen(bool fullscreen) override;
@@ -89,7 +87,8 @@ class X11Window final : public Window {
   bool monitor_changed_ = false;
   bool pointer_shown_ = true;
   bool gone_ = false;
-  std::array<bool, 256> held_{};  ///< by key code: a press while held is a repeat
+  std::optional<Error> not_shown_;  ///< why the last picture isn't on the screen; take_events returns it
+  std::array<bool, 256> held_{};    ///< by key code: a press while held is a repeat
 };
 
 X11Window::~X11Window() {
@@ -202,6 +201,7 @@ Result<std::vector<WindowEvent>> X11Window::take_events() {
   }
   if (!gone_) find_position(out);
   if (gone_) return fail("", "the X server has gone away");
+  if (not_shown_) return fail(*not_shown_);
   return out;
 }
 
@@ -214,6 +214,18 @@ void X11Window::find_position(std::vector<WindowEvent>& out) {
   if (monitor_changed_ || DesktopPosition{x, y} != position_) out.emplace_back(Moved{});
   position_ = {x, y};
   position_stale_ = monitor_changed_ = false;
+}
+
+void X11Window::present() {
+  if (gone_ || eglSwapBuffers(egl_, surface_) != EGL_FALSE) return;
+  const EGLint error = eglGetError();
+  if (error == EGL_BAD_SURFACE || error == EGL_BAD_NATIVE_WINDOW) return;  // the window is being closed
+  // Everything that was given to the card would have to be made anew: a new kiosk does that, and the document is the model server's.
+  not_shown_ = Error{DisplayString(display_), 0,
+                     error == EGL_CONTEXT_LOST
+                         ? "the graphics card was reset, and the picture is lost. Nothing of the model is: start the kiosk again"
+                         : "the graphics card shows no picture any more (error " + std::to_string(error) +
+                               "). Nothing of the model is lost: start the kiosk again"};
 }
 
 std::optional<std::int64_t> X11Window::last_refresh_ns() {

@@ -22,6 +22,20 @@ namespace {
 
 constexpr double kRegionPixels = 200;  ///< of a region's size on the screen, where the view goes to it
 
+/// What a place covers: where it is worst, the curve where parts cross, and its shells.
+stereo::Box box_of(const ipc::ContactRegion& place, const ipc::SnapshotView& shown) {
+  stereo::Box box;
+  box.add(mesh::Vec3(place.at[0], place.at[1], place.at[2]));
+  for (const std::array<double, 6>& segment : place.curve)
+    for (const std::size_t end : {0U, 3U}) box.add(mesh::Vec3(segment[end], segment[end + 1], segment[end + 2]));
+  for (const auto shell : place.shells) {
+    if (shell >= shown.shell_count()) continue;  // of a newer state
+    for (const mesh::NodeIndex node : shown.shell(shell).node)
+      if (node.valid() && node.value < shown.node_count() && shown.position(node.value).allFinite()) box.add(shown.position(node.value));
+  }
+  return box;
+}
+
 }  // namespace
 
 std::span<const input::KeyBinding> keys() { return kKeys; }
@@ -129,9 +143,10 @@ void ContactTool::go_to(std::size_t region) {
   const ipc::ContactRegion& place = contacts->regions[region];
   toolkit::PictureView& view = context_.view;
   const ipc::SnapshotInfo& info = context_.shown.snapshot->info();
-  const double scale = toolkit::scale_to_look_at(std::max(info.target_size, std::sqrt(place.area)), view.view.mm_per_unit,
+  const stereo::Sphere sphere = stereo::sphere_around(box_of(place, *context_.shown.snapshot));
+  const double scale = toolkit::scale_to_look_at(std::max(info.target_size, 2 * sphere.radius), view.view.mm_per_unit,
                                                  toolkit::aim(view).mm_per_pixel(), kRegionPixels);
-  view.glide.begin(mesh::Vec3(place.at[0], place.at[1], place.at[2]), scale, context_.clock.now_ns());
+  view.glide.begin(sphere.centre, scale, context_.clock.now_ns());
   context_.trace.line(fmt::format("contact {} of {} {}", region + 1, contacts->regions.size(), region_words(place, info.length_unit)));
 }
 

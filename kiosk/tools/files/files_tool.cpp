@@ -103,6 +103,7 @@ void FilesTool::draw_dialog(int kind, bool opened, panels::PanelLayout& layout) 
     facts.problem = not_opened_->why;
   }
   const std::optional<std::string> entered = path_box(facts, entry_, layout);
+  if (std::exchange(entry_.cancelled, false)) layout.ask([this] { toolkit::close_dialog(context_); });
   if (!entered) return;
   layout.ask([this, dialog, path = *entered] { enter(dialog, path); });
   layout.ask([this] { toolkit::close_dialog(context_); });

@@ -130,6 +130,19 @@ void foot(const PathFacts& facts, PathEntry& entry, panels::PanelLayout& layout)
                      panels::kFaintInk);
 }
 
+/// At the right. True: the one that opens or saves was pressed; `entry` says of the other.
+bool buttons(const PathFacts& facts, PathEntry& entry, panels::PanelLayout& layout) {
+  const char* const does = facts.dialog == PathDialog::open ? "Open" : "Save";
+  const float width = 6 * ImGui::GetFontSize();
+  ImGui::SetCursorPosX(ImGui::GetWindowContentRegionMax().x - 2 * width - kGrid);
+  const bool pressed = ImGui::Button(does, ImVec2(width, 0));
+  panels::note_item(layout, "path ok", does);
+  ImGui::SameLine(0, kGrid);
+  if (ImGui::Button("Cancel", ImVec2(width, 0))) entry.cancelled = true;
+  panels::note_item(layout, "path cancel", "");
+  return pressed;
+}
+
 }  // namespace
 
 std::optional<std::string> path_box(const PathFacts& facts, PathEntry& entry, panels::PanelLayout& layout) {
@@ -164,7 +177,7 @@ std::optional<std::string> path_box(const PathFacts& facts, PathEntry& entry, pa
   panels::note_item(layout, "path", printable(entry.typed));
   std::size_t taken = enter && entry.chosen ? *entry.chosen : rows.size();  // none
   const float line = ImGui::GetTextLineHeightWithSpacing();
-  const float most = std::max(3 * line, room.height - 8 * line - 6 * kGrid);
+  const float most = std::max(3 * line, room.height - 10 * line - 6 * kGrid);
   ImGui::BeginChild("files", ImVec2(0, std::min(most, kRowsInSight * line)));
   // A folder may hold thousands.
   ImGuiListClipper clipper;
@@ -178,7 +191,14 @@ std::optional<std::string> path_box(const PathFacts& facts, PathEntry& entry, pa
     ImGui::SetScrollFromPosY(ImGui::GetCursorStartPos().y + (static_cast<float>(*entry.chosen) + 0.5F) * line - ImGui::GetScrollY(), 0.5F);
   ImGui::EndChild();
   foot(facts, entry, layout);
+  const bool pressed = buttons(facts, entry, layout);
   ImGui::End();
+  if (pressed) {
+    if (entry.chosen && *entry.chosen < rows.size())
+      taken = *entry.chosen;
+    else if (!entry.typed.empty())
+      return entry.typed;
+  }
   if (taken >= rows.size()) return enter && !entry.typed.empty() ? std::optional(entry.typed) : std::nullopt;
   const BrowseRow& row = rows[taken];
   // A folder is gone into; a file is opened, or its name is gone on with.

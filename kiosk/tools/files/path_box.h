@@ -33,6 +33,7 @@ struct PathEntry {
   Browsed browsed{};
   std::optional<std::string> browsed_for{};
   bool browsed_all = false;
+  bool cancelled = false;  ///< the button was pressed
 };
 
 /// Lays the box out (inside Gui::layout). Returns the path that was entered.

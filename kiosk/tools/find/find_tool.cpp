@@ -80,6 +80,7 @@ void FindTool::find() {
     found_->hits.push_back({&binding, {fmt::format("{}: {}", menu, binding.meaning), std::string(binding.label)}});
   }
   if (!found_->hits.empty()) return;
+  if (!found_->problem.empty()) return;
   found_->problem = !context_.shown.snapshot ? "No command has all of these words. Ids can be gone to when a deck is open."
                     : typed_id(entry_.typed) ? "There is no node, shell or part of that id."
                                              : "No command and no part has all of these words.";
@@ -91,7 +92,10 @@ void FindTool::find_places(std::string_view text) {
   const ipc::SnapshotInfo& info = shown->info();
   if (const std::optional<TypedId> typed = typed_id(text)) {
     const auto wanted = [&](Kind kind) { return typed->kind == Kind::any || typed->kind == kind; };
-    if (const auto node = wanted(Kind::node) ? toolkit::node_with_id(context_, typed->id) : std::nullopt)
+    const auto node = wanted(Kind::node) ? toolkit::node_with_id(context_, typed->id) : std::nullopt;
+    if (node && !toolkit::is_used(context_, *node))
+      found_->problem = fmt::format("Node {} belongs to no element: it was removed, or never had one.", typed->id);
+    else if (node)
       add_place({Kind::node, typed->id, node->value},
                 fmt::format("node {}  {}", typed->id, at_words(shown->position(node->value), info.length_unit)));
     if (const auto shell = wanted(Kind::shell) ? toolkit::shell_with_id(context_, typed->id) : std::nullopt) {

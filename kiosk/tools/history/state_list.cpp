@@ -47,7 +47,9 @@ std::optional<std::uint64_t> branch_rows(const std::vector<BranchRow>& branches,
     }
     const float line = ImGui::GetFontSize(), top = at.y + std::floor((height - line) / 2);
     draw_fork(list, ImVec2(at.x, top), line);
-    const std::string words = fmt::format("Branch {}: {}", row.number, row.words);
+    const std::string words = panels::elide_middle(
+        fmt::format("Branch {}: {}", row.number, row.words), static_cast<double>(width - line * 1.2F),
+        [](std::string_view piece) { return static_cast<double>(ImGui::CalcTextSize(piece.data(), piece.data() + piece.size()).x); });
     list.AddText(ImVec2(at.x + line * 1.2F, top), panels::kInk, words.c_str());
   }
   return clicked;

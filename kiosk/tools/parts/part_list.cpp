@@ -159,7 +159,7 @@ class List {
     const std::size_t all = tree_.facts().parts.size(), acted = tree_.acted_on().size();
     const auto hidden = std::ranges::count_if(tree_.facts().parts, &PartRow::hidden);
     std::string words = tree_.acts_on_chosen() ? fmt::format("{} chosen", grouped(acted))
-                        : acted == all         ? fmt::format("all {} parts", grouped(all))
+                        : acted == all         ? (all == 1 ? std::string("the only part") : fmt::format("all {} parts", grouped(all)))
                                                : fmt::format("{} of {} match", grouped(acted), grouped(all));
     if (hidden > 0) words += fmt::format(", {} hidden", grouped(static_cast<std::uint64_t>(hidden)));
     ImGui::PushFont(panels::small_font());

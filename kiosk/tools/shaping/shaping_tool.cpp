@@ -196,7 +196,10 @@ std::vector<toolkit::RailEntry> ShapingTool::rail() const {
 void ShapingTool::draw_options(panels::OptionRow& row) {
   const auto key = [](ShapingCommand command) -> const input::KeyBinding& { return input::binding_of(kKeys, command_of(command)); };
   const std::string& unit = context_.shown.snapshot->info().length_unit;
-  row.value("falloff", std::string(mesh::shape::name(options_.profile)), key(ShapingCommand::falloff));
+  const bool grab_alone =
+      options_.profile != mesh::shape::Profile::constant && options_.flat == 0 && options_.origin == mesh::shape::Origin::grab;
+  row.value("falloff", std::string(mesh::shape::name(options_.profile)) + (grab_alone ? " from the grab" : ""),
+            key(ShapingCommand::falloff));
   row.value("mirror",
             options_.symmetry == DeckAxis::none ? "off" : std::string(kDeckAxisNames[static_cast<std::size_t>(options_.symmetry)]),
             key(ShapingCommand::symmetry));

@@ -215,6 +215,20 @@ TEST_F(Keeping, what_an_edit_gives_up_is_a_branch_after_a_restart_too) {
   EXPECT_EQ(height(second, 1313), heights[0]);
 }
 
+TEST_F(Keeping, a_repair_that_found_nothing_to_do_is_no_state_and_no_record) {
+  const fs::path deck = folder_.sheet();
+  DocumentKeeper keeper = this->keeper();
+  ASSERT_TRUE(keeper.open(request(deck), {}));
+  ASSERT_TRUE(keeper.edit(move_edit(1313, 0.001)));
+  ASSERT_TRUE(keeper.go_to(0));
+  const Result<EditReport> report = keeper.edit(Repair{});
+  ASSERT_TRUE(report) << report.error().text();
+  EXPECT_EQ(report->notes, std::vector<std::string>{"nothing to repair: no edit made an element fail or warn"});
+  EXPECT_EQ(keeper.state().journalled_edits, 2U);
+  EXPECT_EQ(keeper.document().current().number, 0U);
+  EXPECT_TRUE(keeper.state().can_redo) << "nor does it set aside what was undone";
+}
+
 TEST_F(Keeping, a_branch_from_before_a_save_is_gone_to_and_a_restart_knows_it) {
   const fs::path deck = folder_.sheet();
   double lifted = 0;

@@ -392,6 +392,8 @@ SnapshotTable sound_table() {
   table.arrays[0].count = table.arrays[1].count = table.arrays[2].count = 5;
   for (std::size_t i = 0; i < 3; ++i) table.arrays[i].pieces.push_back({0, 64 * i * 2, i});
   table.info.parts.push_back({3, "a", true, false, 4});
+  table.info.parts.back().thinnest = 0.75F;
+  table.info.parts.back().thickest = 1.5F;
   table.info.parts.push_back({5, "b", false, true, 1});
   return table;
 }
@@ -403,6 +405,7 @@ TEST(SnapshotTable, survives_a_round_trip) {
   const SnapshotPart &a = table->info.parts[0], &b = table->info.parts[1];
   EXPECT_EQ(std::tuple(a.id, a.name, a.hidden, a.locked, a.shells), std::tuple(3, "a", true, false, 4u));
   EXPECT_EQ(std::tuple(b.id, b.name, b.hidden, b.locked, b.shells), std::tuple(5, "b", false, true, 1u));
+  EXPECT_EQ(std::pair(a.thinnest, a.thickest), std::pair(0.75F, 1.5F));
   EXPECT_EQ(table->arrays[1].pieces.at(0).offset, 128u);
 }
 

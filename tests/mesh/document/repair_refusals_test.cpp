@@ -1,4 +1,6 @@
 // Repairs and operations by hand where there is nothing to do or nothing may be done: a sentence, and the document is as it was.
+#include <algorithm>
+
 #include <string>
 #include <utility>
 #include <vector>
@@ -146,6 +148,19 @@ TEST(RepairRefusals, what_is_gone_is_not_there) {
   EXPECT_THAT(refused_alone(document, R"({"edit":"collapse","at":["node:)" + gone + R"(","node:33"]})"),
               HasSubstr("there is no node " + gone));
   EXPECT_FALSE(refused_alone(document, R"({"edit":"translate","by":[0,0,1],"on":")" + gone + "\"}").empty());
+}
+
+TEST(MendingOfHiddenParts, is_said_with_their_ids) {
+  const Folder folder;
+  for (const bool hidden : {true, false})
+    for (const char* mend : {R"({"edit":"repair","scope":"all"})", R"({"edit":"relax","scope":"all"})"}) {
+      Document document = open_text(folder / "a.k", sheet_deck(8, 6));
+      must_apply(document, kDent);
+      if (hidden) must_apply(document, R"({"edit":"hide","on":"1"})");
+      const EditReport report = must_apply(document, mend);
+      ASSERT_GT(report.nodes_moved + report.elements_added, 0u) << mend;
+      EXPECT_EQ(std::ranges::count(report.notes, "a hidden part was changed too: 1"), hidden ? 1 : 0) << mend;
+    }
 }
 
 }  // namespace
