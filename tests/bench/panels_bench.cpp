@@ -31,7 +31,7 @@ namespace {
 using namespace prismesh;
 using namespace prismesh::kiosk;
 
-constexpr display::PixelSize kPicture{1920, 1080};
+constexpr display::PixelSize kPanelsPicture{1920, 1080};
 const panels::Place kDock{0, 36, 312, 1000};
 const panels::Place kView{120, 36, 1480, 960};
 
@@ -42,9 +42,9 @@ void lay_out(benchmark::State& state, const std::function<void(panels::PanelLayo
   panels::Gui gui = std::move(*panels::Gui::create());
   (void)gui.set_type(panels::kFlatType);
   const auto once = [&] {
-    panels::PanelLayout layout{kPicture};
-    gui.layout(kPicture, 0.016, [&] {
-      layout.places = panels::place_panels(kPicture, ImGui::GetFontSize(), {});
+    panels::PanelLayout layout{kPanelsPicture};
+    gui.layout(kPanelsPicture, 0.016, [&] {
+      layout.places = panels::place_panels(kPanelsPicture, ImGui::GetFontSize(), {});
       panel(layout);
     });
   };
