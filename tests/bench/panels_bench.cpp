@@ -31,9 +31,9 @@ namespace {
 using namespace prismesh;
 using namespace prismesh::kiosk;
 
-constexpr display::PixelSize kPicture{1920, 1080};
-const panels::Place kDock{0, 36, 312, 1000};
-const panels::Place kView{120, 36, 1480, 960};
+constexpr display::PixelSize kPanelsPicture{1920, 1080};
+const panels::Place kPanelsDock{0, 36, 312, 1000};
+const panels::Place kPanelsView{120, 36, 1480, 960};
 
 /// Layouts of one panel; what is measured includes beginning and ending the picture's layout.
 void lay_out(benchmark::State& state, const std::function<void(panels::PanelLayout&)>& panel) {
@@ -42,9 +42,9 @@ void lay_out(benchmark::State& state, const std::function<void(panels::PanelLayo
   panels::Gui gui = std::move(*panels::Gui::create());
   (void)gui.set_type(panels::kFlatType);
   const auto once = [&] {
-    panels::PanelLayout layout{kPicture};
-    gui.layout(kPicture, 0.016, [&] {
-      layout.places = panels::place_panels(kPicture, ImGui::GetFontSize(), {});
+    panels::PanelLayout layout{kPanelsPicture};
+    gui.layout(kPanelsPicture, 0.016, [&] {
+      layout.places = panels::place_panels(kPanelsPicture, ImGui::GetFontSize(), {});
       panel(layout);
     });
   };
@@ -54,7 +54,7 @@ void lay_out(benchmark::State& state, const std::function<void(panels::PanelLayo
 
 void in_dock(benchmark::State& state, const std::function<void(panels::PanelLayout&)>& panel) {
   lay_out(state, [&](panels::PanelLayout& layout) {
-    panels::begin_docked("Dock", kDock);
+    panels::begin_docked("Dock", kPanelsDock);
     ImGui::BeginChild("panel");
     panel(layout);
     ImGui::EndChild();
@@ -99,7 +99,7 @@ BENCHMARK(ten_thousand_warnings)->Unit(benchmark::kMillisecond);
 void longest_notice(benchmark::State& state) {
   const input::KeyBinding& list = input::binding_of(key_bindings(), command_of(EditorCommand::deck_warnings));
   const notices::Notice notice{notices::Notice::Kind::information, std::string(100'000, 'x')};
-  lay_out(state, [&](panels::PanelLayout&) { panels::notice_panel({notice, 3}, kView, {990, list}); });
+  lay_out(state, [&](panels::PanelLayout&) { panels::notice_panel({notice, 3}, kPanelsView, {990, list}); });
 }
 BENCHMARK(longest_notice)->Unit(benchmark::kMillisecond);
 
