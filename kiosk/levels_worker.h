@@ -15,7 +15,7 @@ namespace prismesh::kiosk {
 class LevelsWorker {
  public:
   /// A picture of so many at rest may be too slow while the hand moves something; smaller models are drawn as they are.
-  static constexpr std::size_t kFewestShells = 200'000;
+  static constexpr std::size_t kFewestShells = 20'000;
   /// A model must have been shown so long: edits in quick succession don't each begin the work anew.
   static constexpr std::int64_t kRestNs = 500'000'000;
 

@@ -205,7 +205,10 @@ void PanelArrangement::build(ToolContext& context, std::span<const input::MouseB
                         input::binding_of(key_bindings(), tools::files::open_command()), layout);
   build_box(context, layout);
   cover(context, mouse, layout);
-  if (!guidance.empty() && document) panels::guidance_panel(guidance, view);
+  if (!guidance.empty() && document) {
+    panels::guidance_panel(guidance, view);
+    layout.items.push_back({"guidance", guidance, view});
+  }
   notice(context, layout);
 }
 

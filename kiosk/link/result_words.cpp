@@ -52,7 +52,7 @@ std::string words_of_edit(const Edit& edit, std::string_view unit) {
         using E = std::decay_t<decltype(each)>;
         if constexpr (std::is_same_v<E, Translate>) return "Moved " + length(each.by.norm(), unit);
         if constexpr (std::is_same_v<E, Slide>) return "Slid " + length(each.by.norm(), unit);
-        if constexpr (std::is_same_v<E, Lift>) return "Lifted " + length(each.distance, unit);
+        if constexpr (std::is_same_v<E, Lift>) return "Lifted " + length(std::abs(each.distance), unit);  // the sign is the deck's
         if constexpr (std::is_same_v<E, Rotate>) return "Turned " + angle(each.degrees);
         if constexpr (std::is_same_v<E, Move>)
           return "Moved " + length(each.by.norm(), unit) + (each.degrees == 0 ? "" : ", turned " + angle(each.degrees));

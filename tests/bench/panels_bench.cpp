@@ -32,8 +32,8 @@ using namespace prismesh;
 using namespace prismesh::kiosk;
 
 constexpr display::PixelSize kPanelsPicture{1920, 1080};
-const panels::Place kDock{0, 36, 312, 1000};
-const panels::Place kView{120, 36, 1480, 960};
+const panels::Place kPanelsDock{0, 36, 312, 1000};
+const panels::Place kPanelsView{120, 36, 1480, 960};
 
 /// Layouts of one panel; what is measured includes beginning and ending the picture's layout.
 void lay_out(benchmark::State& state, const std::function<void(panels::PanelLayout&)>& panel) {
@@ -54,7 +54,7 @@ void lay_out(benchmark::State& state, const std::function<void(panels::PanelLayo
 
 void in_dock(benchmark::State& state, const std::function<void(panels::PanelLayout&)>& panel) {
   lay_out(state, [&](panels::PanelLayout& layout) {
-    panels::begin_docked("Dock", kDock);
+    panels::begin_docked("Dock", kPanelsDock);
     ImGui::BeginChild("panel");
     panel(layout);
     ImGui::EndChild();
@@ -99,7 +99,7 @@ BENCHMARK(ten_thousand_warnings)->Unit(benchmark::kMillisecond);
 void longest_notice(benchmark::State& state) {
   const input::KeyBinding& list = input::binding_of(key_bindings(), command_of(EditorCommand::deck_warnings));
   const notices::Notice notice{notices::Notice::Kind::information, std::string(100'000, 'x')};
-  lay_out(state, [&](panels::PanelLayout&) { panels::notice_panel({notice, 3}, kView, {990, list}); });
+  lay_out(state, [&](panels::PanelLayout&) { panels::notice_panel({notice, 3}, kPanelsView, {990, list}); });
 }
 BENCHMARK(longest_notice)->Unit(benchmark::kMillisecond);
 

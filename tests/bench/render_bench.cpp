@@ -1,13 +1,20 @@
 // Measures drawing a picture with many selected nodes, and selecting them. Say which renderer drew: llvmpipe draws on the processor, so its
 // times contain the work of a graphics card as well.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
 #include <ctime>
+#include <fstream>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <GLES3/gl31.h>
 #include <benchmark/benchmark.h>
+#include <unistd.h>
 
 #include "kiosk/display/headless.h"
+#include "kiosk/levels_worker.h"
 #include "kiosk/render/make_levels.h"
 #include "kiosk/render/offscreen.h"
 #include "kiosk/render/renderer.h"
@@ -21,14 +28,17 @@ using namespace prismesh::kiosk;
 constexpr int kWidth = 1600, kHeight = 900;
 constexpr std::uint32_t kSide = 1000;
 
+/// A curved sheet of side x side quads.
+test::TestSource sheet_of(std::uint32_t side) {
+  test::TestSource source;
+  test::add_grid(source, side, side, 0,
+                 [](double u, double v) { return mesh::Vec3(5000 * u, 5000 * v, 300 * std::sin(6 * u) * std::cos(5 * v)); });
+  return source;
+}
+
 /// A million quads, so many of whose nodes are selected: a band across the sheet.
 std::shared_ptr<test::TestSource> million(std::size_t selected) {
-  static const test::TestSource sheet = [] {
-    test::TestSource source;
-    test::add_grid(source, kSide, kSide, 0,
-                   [](double u, double v) { return mesh::Vec3(5000 * u, 5000 * v, 300 * std::sin(6 * u) * std::cos(5 * v)); });
-    return source;
-  }();
+  static const test::TestSource sheet = sheet_of(kSide);
   auto source = std::make_shared<test::TestSource>(sheet);
   for (std::size_t n = 0; n < selected; ++n) source->node_marks[n + 400 * (kSide + 1)] = mesh::document::kSelected;
   source->key = selected + 1;
@@ -91,6 +101,72 @@ BENCHMARK(turning_with_levels)
     ->Arg(1)
     ->Arg(5)
     ->Arg(40)
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime();
+
+std::size_t resident_bytes() {
+  std::ifstream in("/proc/self/statm");
+  std::size_t pages = 0;
+  in >> pages >> pages;
+  return pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+}
+
+/// Turns a sheet once around and dives to its middle and back: 120 pictures for both eyes at 1920 x 1080. Argument: quads along a side. For
+/// each picture wall time; memory is that of the whole program.
+void path(benchmark::State& state) {
+  constexpr int kPathWidth = 1920, kPathHeight = 1080, kTurns = 80, kDives = 40;
+  display::Headless headless = std::move(*display::Headless::create());
+  const auto renderer = std::move(*render::Renderer::create({}));
+  const render::Offscreen target = std::move(*render::Offscreen::create(kPathWidth, kPathHeight));
+  const auto source = std::make_shared<test::TestSource>(sheet_of(static_cast<std::uint32_t>(state.range(0))));
+  (void)renderer->set_model(source);
+  if (source->shell_nodes.size() > kiosk::LevelsWorker::kFewestShells)
+    (void)renderer->set_levels(std::make_shared<const render::MadeLevels>(render::make_levels(*source).value()));
+  render::Picture picture;
+  picture.profile = *stereo::find_profile("side-by-side");
+  picture.view.rotation = *stereo::named_rotation("iso");
+  picture.view.bounds = stereo::sphere_around(renderer->bounds());
+  picture.view = renderer->fitted(picture.view, stereo::screen_size_mm(picture.profile, kPathWidth, kPathHeight));
+  picture.moving = source->shell_nodes.size() > kiosk::LevelsWorker::kFewestShells;
+  std::vector<double> times;
+  std::size_t triangles = 0;
+  double pixels = 0;
+  const auto draw = [&] {
+    const auto start = std::chrono::steady_clock::now();
+    benchmark::DoNotOptimize(renderer->draw(picture, target.framebuffer(), kPathWidth, kPathHeight));
+    glFinish();
+    times.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+    triangles = std::max(triangles, renderer->figures().moving_triangles);
+    pixels = std::max(pixels, renderer->figures().moving_pixels);
+  };
+  for (auto _ : state) {
+    const stereo::View begin = picture.view;
+    for (int k = 1; k <= kTurns; ++k) {
+      picture.view = stereo::orbit(begin, 2 * 3.14159265358979 * k / kTurns, 0.3 * std::sin(2 * 3.14159265358979 * k / kTurns));
+      draw();
+    }
+    for (int k = 1; k <= kDives; ++k) {
+      picture.view = stereo::zoom(begin, std::pow(40.0, std::sin(3.14159265358979 * k / kDives)), {0, 0});
+      draw();
+    }
+    picture.view = begin;
+  }
+  std::sort(times.begin(), times.end());
+  state.counters["p50_ms"] = times[times.size() / 2];
+  state.counters["p99_ms"] = times[times.size() * 99 / 100];
+  state.counters["triangles"] = static_cast<double>(triangles);
+  state.counters["pixels"] = pixels;
+  state.counters["MB"] = static_cast<double>(resident_bytes()) / 1e6;
+  state.SetLabel(reinterpret_cast<const char*>(glGetString(GL_RENDERER)));
+}
+BENCHMARK(path)
+    ->ArgName("side")
+    ->Arg(100)
+    ->Arg(316)
+    ->Arg(1000)
+    ->Arg(2236)
+    ->Iterations(1)
     ->Unit(benchmark::kMillisecond)
     ->MeasureProcessCPUTime()
     ->UseRealTime();

@@ -90,7 +90,7 @@ TEST(ResultWords, say_in_a_line_what_an_edit_did) {
   report.after.fail = 3;
   Lift lift;
   lift.distance = -12.345;
-  EXPECT_EQ(result_of(lift, report), "Lifted -12.3 mm: 1 node, at most 1.3 mm; fail 2 \u2192 3; mass -0.03 %");
+  EXPECT_EQ(result_of(lift, report), "Lifted 12.3 mm: 1 node, at most 1.3 mm; fail 2 \u2192 3; mass -0.03 %");
   report.mass_after = report.mass_before;
   Translate move;
   move.by = {3, 0, 4};

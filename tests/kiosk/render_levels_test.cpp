@@ -185,7 +185,7 @@ TEST_F(RenderLevels, hold_selected_shells_apart) {
 }
 
 TEST(LevelsWorker, makes_levels_once_the_model_rests_and_stops_for_another) {
-  const auto large = std::make_shared<test::TestSource>(waves(460)), other = std::make_shared<test::TestSource>(waves(460));
+  const auto large = std::make_shared<test::TestSource>(waves(200)), other = std::make_shared<test::TestSource>(waves(200));
   other->key = 2;
   LevelsWorker worker;
   EXPECT_EQ(worker.turn(0, large, true), nullptr);

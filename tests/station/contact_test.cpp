@@ -82,12 +82,22 @@ TEST_F(ContactTest, places_are_listed_marked_and_gone_to) {
   EXPECT_NE(first.find("cross, "), std::string::npos) << first;
   EXPECT_NE(first.find("1 Hat and 2 Closing plate"), std::string::npos) << first;
   EXPECT_EQ(heard("contact marks ").find("ways 0"), std::string::npos) << "of the chosen place";
-  station_->settled_aim();
+  const Station::Aim aim = station_->settled_aim();
+  const Station::Item view = *station_->item("view");
+  for (const auto& [id, node] : hat_.plate) {
+    // The walls pass through the plate along its whole length: all of that is seen.
+    const auto at = aim.pixel_of(node);
+    EXPECT_TRUE(at[0] > view.x && at[0] < view.x + view.width && at[1] > view.y && at[1] < view.y + view.height) << id;
+    if (HasFailure()) break;
+  }
   station_->show_people("contact");
   station_->key("ctrl+z");
   EXPECT_TRUE(heard("contact generation ").ends_with(" cross 0 close 0 gap 0"));
   station_->key("ctrl+y");
-  ASSERT_FALSE(heard("contact marks ").empty());
+  // Those of the state before go first.
+  ASSERT_FALSE(station_->kiosk()
+                   .wait_until([](const std::string& line) { return line.starts_with("contact marks ") && line != "contact marks 0"; })
+                   .empty());
   station_->kiosk().skip_lines();
   station_->key("ctrl+k");
   EXPECT_EQ(heard("contact marks "), "contact marks 0");

@@ -154,7 +154,8 @@ TEST_F(FrameTest, a_dragged_border_moves_the_model_along_and_is_kept) {
 }
 
 TEST_F(FrameTest, a_command_is_found_by_its_words_and_carried_out) {
-  station_->start_kiosk();
+  station_->start_kiosk({"--title", "The sheet as it was drawn"});
+  EXPECT_TRUE(says("guidance", "The sheet as it was drawn"));
   station_->key("ctrl+p");
   station_->type("single creases pie");
   station_->key("Return");

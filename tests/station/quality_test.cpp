@@ -136,6 +136,31 @@ TEST_F(QualityTest, limits_that_are_typed_hold_for_relaxing) {
   EXPECT_GT(moved, 0u);
 }
 
+TEST_F(QualityTest, a_node_that_was_removed_is_not_gone_to) {
+  station_->start_kiosk();
+  // The middle of an edge between two nodes: collapsing it removes one of them.
+  const std::int64_t node = kFirstNode + 12 * kSheetSide + 12;
+  const Point &a = nodes_.at(node), &b = nodes_.at(node + 1);
+  const auto at = station_->pixel_of({(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, (a[2] + b[2]) / 2});
+  station_->move(at[0], at[1]);
+  station_->kiosk().skip_lines();
+  station_->key("ctrl+b");
+  ASSERT_FALSE(station_->kiosk().wait_for("operation previewed").empty());
+  station_->kiosk().skip_lines();
+  station_->key("Return");
+  ASSERT_FALSE(station_->kiosk().wait_for("generation ").empty());
+  const std::map<std::int64_t, Point> left = nodes_of_deck(station_->save_copy("collapsed.k"));
+  const std::int64_t gone = left.contains(node) ? node + 1 : node;
+  ASSERT_FALSE(left.contains(gone));
+  station_->key("ctrl+p");
+  station_->type("node " + std::to_string(gone));
+  EXPECT_TRUE(says("find problem", "Node " + std::to_string(gone) + " belongs to no element"));
+  const std::string aim = station_->kiosk().last("aim ");
+  station_->key("Return");
+  station_->settled_aim();
+  EXPECT_EQ(station_->kiosk().last("aim "), aim);
+}
+
 TEST_F(QualityTest, an_operation_by_hand_is_shown_before_it_is_done) {
   station_->start_kiosk();
   const std::int64_t shell = shells_.begin()->first + 12 * (kSheetSide - 1) + 12;

@@ -87,6 +87,7 @@ std::optional<std::size_t> find_box(const FindFacts& facts, bool opened, FindEnt
     ImGui::EndChild();
   } else if (!facts.problem.empty()) {
     ImGui::TextWrapped("%s", panels::printable(facts.problem).c_str());
+    panels::note_item(layout, "find problem", panels::printable(facts.problem));
   }
   ImGui::End();
   return taken;
