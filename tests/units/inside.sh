@@ -123,6 +123,14 @@ done
 check "the edits go on" session edit '{"edit":"lift","distance":-2}'
 check "and are saved" session save
 check "the saved deck keeps its group and rights" bash -c 'said=$(stat -c "%G %a" /var/lib/prismesh/models/sample.k); echo "$said"; [ "$said" = "prismesh 664" ]'
+# --- models from the network: not started with the target, since nobody has enabled it ---
+check "prismesh-intake isn't started by itself" bash -c '! systemctl is-active --quiet prismesh-intake.service'
+systemctl start prismesh-intake.service || journalctl --no-pager -u prismesh-intake.service
+health() { printf 'GET /health HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n' | timeout 5 openssl s_client -quiet -tls1_3 -connect 127.0.0.1:7443 2>/dev/null; }
+check "prismesh-intake answers by TLS 1.3" bash -c "$(declare -f health); health | grep -q '\"status\": \"ok\"'"
+check "its key is its own" [ "$(stat -c '%U %a' /var/lib/prismesh-intake/identity.pem)" = "prismesh-intake 600" ]
+check "the group reads its store" [ "$(stat -c '%G %a' /var/lib/prismesh-intake/store/models)" = "prismesh 750" ]
+check "prismesh-intake stops" systemctl stop prismesh-intake.service
 check "no unit has failed" bash -c '[ -z "$(systemctl list-units --failed --no-legend "prismesh*")" ]'
 
 # --- what can't start says so, and isn't started again and again ---

@@ -39,6 +39,8 @@ driver = "dynamixel"
 simulated = true
 [haptic_pen]
 driver = "simulated"
+[remote]
+listen = "127.0.0.1:7443"
 SETTINGS
 chmod -R go-w "$root/etc/prismesh"
 "$build/bin/prismesh" sample --elements 2000 -o "$root/root/sample.k" >/dev/null

@@ -113,6 +113,18 @@ TEST_F(StoreReader, follows_no_links) {
   EXPECT_FALSE(Reader::open(store())->find(record_.model));
 }
 
+TEST_F(StoreReader, opens_single_names_only) {
+  const Result<Folder> folder = Folder::open(store());
+  put_text(root_ / "secret", "secret");
+  for (const char* name : {"../secret", "..", ".", "", "models/../../secret", "/etc/passwd"}) {
+    EXPECT_FALSE(folder->read(name)) << name;
+    EXPECT_FALSE(folder->folder(name)) << name;
+  }
+  fs::create_directory_symlink(root_, store() / "out");
+  EXPECT_FALSE(folder->folder("out"));
+  EXPECT_TRUE(folder->folder("models"));
+}
+
 TEST_F(StoreReader, writes_nothing_outside_the_folder) {
   manifest_.files[1].path = "../part.k";
   EXPECT_THAT(lay_out().error().text(), HasSubstr("the part '..'"));
