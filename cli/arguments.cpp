@@ -282,7 +282,12 @@ void add_session(Parser& parser) {
     command->add_flag("--keep", o->keep, "keep unsaved edits: they come back when their deck is opened again")->excludes(discard);
   };
   CLI::App* open_app = add("open", Action::open, "open a deck");
-  names_file(open_app->add_option("DECK", options->deck, "the deck's main file"))->required();
+  CLI::Option* deck = names_file(open_app->add_option("DECK", options->deck, "the deck's main file"));
+  CLI::Option* stored =
+      open_app->add_option("--stored", options->stored, "instead of DECK: a model of the store, by its hash")->excludes(deck);
+  open_app->callback([deck, stored] {
+    if (deck->count() + stored->count() == 0) throw CLI::RequiredError("DECK or --stored");
+  });
   open_app->add_flag("--sandboxed", options->sandboxed, "nobody vouches for the deck: modeld has it read and rewritten in a sandbox");
   add_unsaved(open_app);
   CLI::App* edit_app = add("edit", Action::edit, "edit the open document");

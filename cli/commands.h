@@ -115,6 +115,7 @@ struct SessionOptions {
   std::vector<std::string> edits;               ///< edit: JSON, done first
   std::optional<std::filesystem::path> script;  ///< edit: JSON Lines, done after them
   std::optional<std::filesystem::path> output;  ///< save: the main file to write; absent: in place
+  std::string stored;                           ///< open: a model of the store, instead of `deck`
   bool sandboxed = false;                       ///< open
   bool discard = false;                         ///< open, close: gives unsaved edits up
   bool keep = false;                            ///< open, close: keeps unsaved edits for the next opening of their deck

@@ -164,7 +164,8 @@ std::string whole_path(const std::filesystem::path& path) {
 
 ipc::Open open_request(const SessionOptions& options, const Common& common) {
   ipc::Open open;
-  open.path = whole_path(options.deck);
+  open.stored = options.stored;
+  if (options.stored.empty()) open.path = whole_path(options.deck);
   open.discard = options.discard;
   open.keep = options.keep;
   open.sandboxed = options.sandboxed;

@@ -39,6 +39,7 @@ Result<IntakeOptions> intake_options(const drivers::settings::RemoteSettings& se
   IntakeOptions options;
   options.state_directory = state_directory;
   options.store = state_directory / "store";
+  options.work = state_directory / "work";
   options.server.address = settings.address;
   options.server.port = settings.port;
   options.hosts = settings.hosts;
@@ -74,13 +75,26 @@ struct Daemon::Impl final : daemon::Service<BusProtocol> {
   }
 
   void request(ipc::ClientId client, std::uint64_t number, Request request, std::size_t) override {
+    if (const auto* work = std::get_if<ipc::PublishWork>(&request)) return publish(client, number, *work);
     answer(client, number, std::visit([this](const auto& asked) { return this->answer_to(asked); }, request));
   }
 
+  void publish(ipc::ClientId client, std::uint64_t number, const ipc::PublishWork& work) {
+    const std::optional<ipc::store::ContentHash> from = ipc::store::parse_content_hash(work.derived_from);
+    if (!from) return answer(client, number, ipc::Failed{"request", 0, "\"derived_from\" is no hash of a model", {}});
+    intake->publish_work(work.work, *from, [this, client, number](Result<ipc::store::ContentHash> model) {
+      post([this, client, number, model = std::move(model)] {
+        if (model) return answer(client, number, ipc::PublishedWork{model->hex()});
+        answer(client, number, ipc::failed_from(model.error()));
+      });
+    });
+  }
+
   Answer answer_to(const ipc::IntakeHello&) { return ipc::Done{}; }
+  Answer answer_to(const ipc::PublishWork&) { return ipc::Done{}; }  // answered later
   Answer answer_to(const ipc::GetIntake&) {
     return ipc::IntakeInfo{options.server.address + ":" + std::to_string(intake->port()), intake->fingerprint().hex(),
-                           options.store.string()};
+                           options.store.string(), options.work.string()};
   }
   Answer answer_to(const ipc::MakePairingCode& asked) {
     const Result<Scopes> scopes = scopes_named(asked.scopes);

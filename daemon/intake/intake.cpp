@@ -10,6 +10,7 @@
 
 #include "base/log.h"
 #include "daemon/intake/api/model_answers.h"
+#include "daemon/intake/store/publish_folder.h"
 #include "ipc/intake/pairing_code.h"
 #include "ipc/wire/server.h"
 
@@ -20,6 +21,8 @@ namespace {
 constexpr std::chrono::minutes kExpirePeriod{1};
 constexpr std::chrono::seconds kBeatPeriod{1};
 constexpr std::int64_t kMaxSilenceNs = 10'000'000'000;
+/// What is edited on the station is published under this name; tokens can't have it.
+constexpr const char* kStationsName = "(station)";
 
 void fill_with_randomness(std::span<std::byte> bytes) {
   // It fails where the kernel gives none, and nothing that it is for may go on then.
@@ -42,6 +45,7 @@ struct Intake::Impl {
 
   ipc::Descriptor lock;
   Identity identity;
+  std::filesystem::path work;
   Figures figures;
   EventHub events;
   std::shared_ptr<StoreThread> store;
@@ -93,6 +97,7 @@ Result<std::unique_ptr<Intake>> Intake::start(const IntakeOptions& options) {
   for (const std::string& note : notes) logging::warn("{}", note);
   auto impl =
       std::make_unique<Impl>(std::move(*lock), std::move(*identity), std::make_shared<StoreThread>(std::move(*store)), std::move(*access));
+  impl->work = options.work;
   impl->api.emplace(impl->store, *impl->access, impl->events, impl->figures,
                     ApiSettings{options.hosts, options.store_limits.file_bytes, 16}, seconds_since_1970);
   Result<std::unique_ptr<HttpsServer>> server =
@@ -119,6 +124,19 @@ void Intake::describe(const ipc::store::ContentHash& model, const ipc::store::Mo
     const Outcome<ipc::store::ModelRecord> record = store.describe(model, figures, thumbnail);
     if (record) return impl->events.tell("described", model, model_json({*record, false}));
     logging::warn("what was found in {} isn't kept: {}", model.hex(), record.error().error.text());
+  });
+}
+
+void Intake::publish_work(const std::string& folder, const ipc::store::ContentHash& derived_from,
+                          std::function<void(Result<ipc::store::ContentHash>)> then) {
+  if (!ipc::store::is_single_name(folder)) return then(fail("request", "\"work\" is no name of a folder: " + folder));
+  impl_->store->run([impl = impl_.get(), folder, derived_from, then = std::move(then)](Store& store) {
+    const Outcome<ipc::store::ModelRecord> record =
+        publish_folder(store, {impl->work / folder, derived_from, kStationsName, seconds_since_1970()});
+    if (!record) return then(fail(record.error().error));
+    impl->access->note(kStationsName, "published", record->model.hex());
+    impl->events.tell("published", record->model, model_json({*record, false}));
+    then(record->model);
   });
 }
 

@@ -19,6 +19,7 @@ namespace prismesh::intake {
 struct IntakeOptions {
   std::filesystem::path state_directory;  ///< of the key, tokens and audit log
   std::filesystem::path store;
+  std::filesystem::path work;  ///< stored models are edited in folders beneath it
   ServerSettings server;
   StoreLimits store_limits;
   AccessLimits access_limits;
@@ -39,6 +40,10 @@ class Intake {
   std::string make_pairing_code(const PairingOffer& offer);
   /// Says what a reader found in a model; the catalogue's followers are told.
   void describe(const ipc::store::ContentHash& model, const ipc::store::ModelFigures& figures, std::string thumbnail);
+
+  /// Publishes what became of a model in a folder of `work`; on another thread, which then calls `then`. Errors: those of publish_folder.
+  void publish_work(const std::string& folder, const ipc::store::ContentHash& derived_from,
+                    std::function<void(Result<ipc::store::ContentHash>)> then);
 
   /// Called from another thread with the hash of each model that is published, described or removed. Before `run`.
   void on_change(std::function<void(const std::string& model)> told);

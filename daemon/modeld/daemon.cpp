@@ -73,7 +73,8 @@ struct Daemon::Impl final : daemon::Service<ModelProtocol>, ClientChannel {
       : lock(std::move(state_lock)),
         page(std::move(state_page)),
         publisher(StateFolder(options.state_directory).first_number()),
-        handler(StateFolder(options.state_directory), publisher, options.history_bytes, clock, DeckSource(options.importer)),
+        handler(StateFolder(options.state_directory), publisher, options.history_bytes, clock, DeckSource(options.importer),
+                StoredModels(options.intake)),
         scheduler(*this, worker, handler, publisher) {}
 
   ipc::Descriptor lock;

@@ -14,6 +14,7 @@ namespace prismesh::modeld {
 struct DaemonOptions {
   std::filesystem::path runtime_directory;
   std::filesystem::path state_directory;
+  std::filesystem::path intake{};                    ///< socket of prismesh-intake
   ImporterPlace importer{};                          ///< for decks that nobody vouches for
   std::size_t history_bytes = std::size_t{2} << 30;  ///< max. memory of the states kept for undo and redo
   std::chrono::seconds hang_limit{60};               ///< the process aborts after so long without a heartbeat; 0: never

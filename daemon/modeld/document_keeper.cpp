@@ -401,6 +401,7 @@ ipc::DocumentState DocumentKeeper::state() const {
   state.files = open_->files;
   state.warnings = document.deck->warnings;
   state.warnings.insert(state.warnings.end(), open_->warnings.begin(), open_->warnings.end());
+  state.stored = open_->request.stored;
   return state;
 }
 

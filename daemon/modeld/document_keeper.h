@@ -63,6 +63,8 @@ class DocumentKeeper {
   const mesh::document::Document& document() const { return open_->document; }
   /// Whether the mesh differs from the deck as it was last opened or saved.
   bool changed() const;
+  /// The document's deck was published in the store as this model.
+  void published_as(const std::string& model);
   /// All fields but `busy`.
   ipc::DocumentState state() const;
 

@@ -163,6 +163,11 @@ Result<ipc::Saved> DocumentKeeper::save_as(const std::string& path, const Progre
   return saved;
 }
 
+void DocumentKeeper::published_as(const std::string& model) {
+  open_->request.stored = model;
+  (void)folder_.write_session({open_->request, 0});  // if that fails, a restart takes it for the model that it came from
+}
+
 /// Makes the deck that was just written to `target` the document's deck. Whenever the daemon dies, one of the two decks has all edits.
 Result<void> DocumentKeeper::become(const fs::path& target, const Progress& progress, ipc::Saved& saved) {
   OpenDocument& open = *open_;
@@ -174,6 +179,7 @@ Result<void> DocumentKeeper::become(const fs::path& target, const Progress& prog
   Result<Journal> journal = begin_journal(*next);
   ipc::Open request = open.request;
   request.path = target.string();
+  request.stored.clear();
   const Result<void> noted = journal ? folder_.write_session({request, 0}) : fail(journal.error());
   if (!noted) {
     if (journal) folder_.remove(journal_file);  // otherwise it may be another one, which was in the way

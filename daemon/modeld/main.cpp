@@ -35,6 +35,7 @@ int main(int argc, char** argv) {
     std::error_code unknown;
     options.runtime_directory = prismesh::ipc::runtime_directory(given.path("--runtime-dir"));
     options.state_directory = prismesh::ipc::state_directory(given.path("--state-dir"));
+    options.intake = options.runtime_directory / "intake.sock";
     // The service manager's socket, if it has one; else the program beside this one.
     options.importer.socket = options.runtime_directory / "import.sock";
     options.importer.program = std::filesystem::read_symlink("/proc/self/exe", unknown).parent_path() / "prismesh-import";

@@ -54,6 +54,10 @@ Outcome RequestHandler::opened() {
 
 Outcome RequestHandler::open(const ipc::Open& request, const Progress& progress) {
   const bool blocked = keeper_.is_blocked(request);
+  if (!blocked && !request.stored.empty() && request.path.empty()) {
+    const Result<ipc::Open> laid_out = models_.lay_out(request);
+    return laid_out ? open(*laid_out, progress) : Outcome{ipc::failed_from(laid_out.error()), {}, {}, {}};
+  }
   const Result<bool> done = keeper_.open(request, progress);
   if (!done) return failed_by_edits(done.error(), blocked);
   // Already open: only the asking client gets the state; other views stay as they are.
@@ -155,11 +159,26 @@ Outcome RequestHandler::save(const ipc::Save& request, const Progress& progress)
                              : request.path && request.stays_unsaved ? keeper_.save_copy(*request.path, progress)
                                                                      : keeper_.save(request.path, progress);
   if (!saved) return {ipc::failed_from(saved.error()), {}, {}, {}};
+  if (!request.path) give_back(*saved);
   Outcome outcome;
   outcome.answer = std::move(*saved);
   if (request.becomes) outcome.events.emplace_back(ipc::DocumentOpened{keeper_.document().path.string()});
   show("save", outcome);
   return outcome;
+}
+
+/// A model of the store that was edited and saved is published as a new one. The save holds whether that works or not.
+void RequestHandler::give_back(ipc::Saved& saved) {
+  const std::string from = keeper_.state().stored;
+  if (from.empty()) return;
+  const Result<std::string> model = models_.give_back(keeper_.document().path, from);
+  if (!model) {
+    saved.notes.push_back("saved on the station; in the store it isn't published: " + model.error().text() + ". Save again to try again");
+    return;
+  }
+  if (*model == from) return;
+  keeper_.published_as(*model);
+  saved.notes.push_back("published in the store as " + *model);
 }
 
 Outcome RequestHandler::close(const ipc::Close& request) {

@@ -11,6 +11,7 @@
 #include "daemon/modeld/document_keeper.h"
 #include "daemon/modeld/drag_session.h"
 #include "daemon/modeld/field_maker.h"
+#include "daemon/modeld/stored_models.h"
 #include "ipc/model/messages.h"
 #include "ipc/model/snapshot_publisher.h"
 #include "mesh/document/contacts.h"
@@ -33,8 +34,9 @@ struct Outcome {
 
 class RequestHandler {
  public:
-  RequestHandler(StateFolder folder, ipc::SnapshotPublisher& publisher, std::size_t history_bytes, Clock& clock, DeckSource decks = {})
-      : keeper_(std::move(folder), history_bytes, std::move(decks)), publisher_(publisher), clock_(clock) {}
+  RequestHandler(StateFolder folder, ipc::SnapshotPublisher& publisher, std::size_t history_bytes, Clock& clock, DeckSource decks = {},
+                 StoredModels models = {})
+      : keeper_(std::move(folder), history_bytes, std::move(decks)), models_(std::move(models)), publisher_(publisher), clock_(clock) {}
 
   Outcome open(const ipc::Open& request, const Progress& progress);
   /// Reopens the deck that was open when the daemon ended. The answer is Failed if that can't be opened.
@@ -68,7 +70,10 @@ class RequestHandler {
   Outcome edited(Result<mesh::document::EditReport> report);
   void show(const std::string& made_by, Outcome& outcome);
 
+  void give_back(ipc::Saved& saved);
+
   DocumentKeeper keeper_;
+  StoredModels models_;
   FieldMaker fields_;
   mesh::document::ContactSearch contact_;  ///< of the open document
   ipc::SnapshotPublisher& publisher_;

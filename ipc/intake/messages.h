@@ -28,7 +28,12 @@ struct GetTokens {};
 struct RevokeToken {
   std::string name;
 };
-using IntakeRequest = std::variant<IntakeHello, GetIntake, MakePairingCode, GetTokens, RevokeToken>;
+/// Publishes a model that was edited on this machine, from a folder beneath the one for such work.
+struct PublishWork {
+  std::string work;          ///< the folder's name
+  std::string derived_from;  ///< hash of the model that was laid out there
+};
+using IntakeRequest = std::variant<IntakeHello, GetIntake, MakePairingCode, GetTokens, RevokeToken, PublishWork>;
 
 // --- answers (Failed and Done: ipc/wire/answers.h) ---
 struct IntakeWelcome {
@@ -39,6 +44,7 @@ struct IntakeInfo {
   std::string address;      ///< "0.0.0.0:7443"
   std::string fingerprint;  ///< SHA-256 of the certificate, in hexadecimal digits
   std::string store;        ///< the store's folder
+  std::string work;         ///< the folder whose folders PublishWork publishes
 };
 struct MadePairingCode {
   std::string code;  ///< with the beginning of the fingerprint and a secret
@@ -53,7 +59,10 @@ struct TokenInfo {
 struct Tokens {
   std::vector<TokenInfo> tokens;
 };
-using IntakeAnswer = std::variant<Failed, Done, IntakeWelcome, IntakeInfo, MadePairingCode, Tokens>;
+struct PublishedWork {
+  std::string model;  ///< its hash; that of `derived_from` where nothing changed
+};
+using IntakeAnswer = std::variant<Failed, Done, IntakeWelcome, IntakeInfo, MadePairingCode, Tokens, PublishedWork>;
 
 // --- events ---
 struct CatalogueChanged {

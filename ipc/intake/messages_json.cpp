@@ -10,7 +10,10 @@ PRISMESH_MESSAGE(ipc::MakePairingCode, "make_pairing_code", f("name", m.name), f
 PRISMESH_MESSAGE(ipc::GetTokens, "get_tokens", );
 PRISMESH_MESSAGE(ipc::RevokeToken, "revoke_token", f.required("name", m.name));
 PRISMESH_MESSAGE(ipc::IntakeWelcome, "welcome", f("protocol", m.protocol), f("version", m.version));
-PRISMESH_MESSAGE(ipc::IntakeInfo, "intake", f("address", m.address), f("fingerprint", m.fingerprint), f("store", m.store));
+PRISMESH_MESSAGE(ipc::IntakeInfo, "intake", f("address", m.address), f("fingerprint", m.fingerprint), f("store", m.store),
+                 f("work", m.work));
+PRISMESH_MESSAGE(ipc::PublishWork, "publish_work", f.required("work", m.work), f.required("derived_from", m.derived_from));
+PRISMESH_MESSAGE(ipc::PublishedWork, "published_work", f("model", m.model));
 PRISMESH_MESSAGE(ipc::MadePairingCode, "pairing_code", f("code", m.code), f("lifetime_s", m.lifetime_s));
 PRISMESH_JSON_OBJECT(ipc::TokenInfo, f("name", m.name), f("scopes", m.scopes), f("made_s", m.made_s), f("expires_s", m.expires_s));
 PRISMESH_MESSAGE(ipc::Tokens, "tokens", f("tokens", m.tokens));

@@ -12,6 +12,7 @@ Role role_of(const GetIntake&) { return Role::watch; }
 Role role_of(const MakePairingCode&) { return Role::edit; }
 Role role_of(const GetTokens&) { return Role::edit; }
 Role role_of(const RevokeToken&) { return Role::edit; }
+Role role_of(const PublishWork&) { return Role::offer; }
 
 }  // namespace
 

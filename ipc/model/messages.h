@@ -36,6 +36,9 @@ struct Open {
   /// Nobody vouches for the deck: it is read, and its text rewritten, by prismesh-import in a sandbox (docs/remote.md). The settings beside
   /// it aren't read.
   bool sandboxed = false;
+  /// Hash of a model in the store, instead of the path: it is copied, and opened sandboxed. Once it is open: the model that its deck came
+  /// from, or was last published as; saving it in place publishes it anew.
+  std::string stored;
 };
 struct Save {
   std::optional<std::string> path;  ///< absent: the deck's own
@@ -172,6 +175,7 @@ struct DocumentState {
   std::vector<ListedGeneration> generations;         ///< oldest first; undo and redo move among them
   std::vector<DeckFile> files;
   std::vector<mesh::deck::Warning> warnings;
+  std::string stored;  ///< Open::stored of it; empty: it doesn't come from the store
 };
 /// States that an edit took the place of after they were undone; GoTo brings them back.
 struct HistoryBranch {

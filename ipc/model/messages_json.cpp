@@ -10,7 +10,8 @@ namespace prismesh::json {
 PRISMESH_MESSAGE(ipc::Hello, "hello", f("protocol", m.protocol), f("program", m.program));
 PRISMESH_JSON_OBJECT(mesh::document::JudgingRule, f("on", m.on), f("target_size", m.target_size), f("criteria", m.criteria));
 PRISMESH_MESSAGE(ipc::Open, "open", f("path", m.path), f("length_unit", m.length_unit), f("target_size", m.target_size),
-                 f("criteria", m.criteria), f("rules", m.rules), f("discard", m.discard), f("keep", m.keep), f("sandboxed", m.sandboxed));
+                 f("criteria", m.criteria), f("rules", m.rules), f("discard", m.discard), f("keep", m.keep), f("sandboxed", m.sandboxed),
+                 f("stored", m.stored));
 PRISMESH_MESSAGE(ipc::Save, "save", f("path", m.path), f("becomes", m.becomes), f("asks", m.asks), f("stays_unsaved", m.stays_unsaved));
 PRISMESH_MESSAGE(ipc::Close, "close", f("discard", m.discard), f("keep", m.keep));
 PRISMESH_MESSAGE(ipc::ApplyEdit, "apply_edit", f("edit", m.edit));
@@ -57,7 +58,7 @@ PRISMESH_MESSAGE(ipc::DocumentState, "state", f("open", m.open), f("busy", m.bus
                  f("parts", m.parts), f("selected_nodes", m.selected_nodes), f("counts", m.counts), f("can_undo", m.can_undo),
                  f("can_redo", m.can_redo), f("changed", m.changed), f("recovered_edits", m.recovered_edits),
                  f("journalled_edits", m.journalled_edits), f("history_bytes", m.history_bytes), f("history_cap", m.history_cap),
-                 f("generations", m.generations), f("files", m.files), f("warnings", m.warnings));
+                 f("generations", m.generations), f("files", m.files), f("warnings", m.warnings), f("stored", m.stored));
 PRISMESH_JSON_OBJECT(ipc::ListedGeneration, f("number", m.number), f("made_by", m.made_by));
 PRISMESH_JSON_OBJECT(ipc::DeckFile, f("name", m.name), f("shells", m.shells), f("parts", m.parts));
 PRISMESH_JSON_OBJECT(ipc::HistoryBranch, f("number", m.number), f("fork", m.fork), f("generations", m.generations));

@@ -20,7 +20,7 @@ enum class Role : std::uint8_t {
   watch,    ///< look at the document and at the state of the devices
   edit,     ///< change, open and save the document; includes watch
   devices,  ///< move the mask, re-arm devices, read settings again; includes watch
-  offer,    ///< name a stored model to be opened, which a user who may edit accepts
+  offer,    ///< have a model that was edited in its folder published in the store
   serve,    ///< answer clients: a daemon's own user
 };
 inline constexpr int kRoleCount = 5;

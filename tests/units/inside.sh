@@ -73,6 +73,8 @@ check "the saved bytes are those of a save without a sandbox" bash -c '
 check "the deck that is not readable for the group is refused in a sentence" bash -c '
   install -m 600 /root/sample.k /var/lib/prismesh/models/closed.k
   said=$(timeout 30 prismesh session --runtime-dir /run/prismesh open --sandboxed /var/lib/prismesh/models/closed.k 2>&1); echo "$said"; grep -q "closed.k" <<<"$said"'
+check "a model that isn't in the store is refused in a sentence" bash -c '
+  said=$(timeout 30 prismesh session --runtime-dir /run/prismesh open --stored $(printf "a%.0s" {1..64}) 2>&1); echo "$said"; grep -q "intake\|holds no model" <<<"$said"'
 check "only the document daemon may ask for one" bash -c '! setpriv --reuid prismesh-kiosk --regid prismesh --clear-groups python3 -c "
 import socket; socket.socket(socket.AF_UNIX).connect(\"/run/prismesh/import.sock\")"'
 
