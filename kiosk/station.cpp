@@ -1,4 +1,5 @@
 #include "kiosk/station.h"
+#include "ipc/intake/client.h"
 
 #include <cmath>
 #include <utility>
@@ -37,7 +38,8 @@ Station::Station(const StationOptions& options, std::unique_ptr<render::Renderer
       eyes({}, devices, clock, trace),
       renderer(std::move(made)),
       editor(options.profile,
-             {state_file("expressions"), state_file("commands"), state_file("decks"), options.follows_others, options.title},
+             {state_file("expressions"), state_file("commands"), state_file("decks"), ipc::intake_socket_path(options.runtime_dir),
+              options.follows_others, options.title},
              {link, pen, *renderer, clock, trace}),
       screen(std::move(gui), options.mouse.in_words(), KeptArrangement(state_file("arrangement.toml")), editor),
       fixed_eyes_(options.fixed_eyes_mm.has_value()),

@@ -3,6 +3,8 @@
 #include <fcntl.h>
 #include <sys/stat.h>
 
+#include <algorithm>
+
 #include "ipc/store/record_text.h"
 
 namespace prismesh::ipc::store {
@@ -66,6 +68,23 @@ Result<Descriptor> Reader::open_content(const ContentHash& hash) const {
   const Result<Folder> shard = all->folder(shard_of(hash));
   if (!shard) return fail(shard.error());
   return shard->read(hash.hex());
+}
+
+Result<std::vector<ModelRecord>> Reader::records(std::size_t limit) const {
+  const Result<Folder> models = root_.folder(kModelsFolder);
+  if (!models) return fail(models.error());
+  const Result<std::vector<std::string>> names = models->names();
+  if (!names) return fail(names.error());
+  std::vector<ModelRecord> all;
+  for (const std::string& name : *names) {
+    const Result<std::string> text = models->content(name, kMaxRecordBytes);
+    if (!text) continue;
+    if (Result<ModelRecord> record = decode_record(*text, name); record && record->model.hex() == name) all.push_back(std::move(*record));
+  }
+  std::sort(all.begin(), all.end(),
+            [](const ModelRecord& a, const ModelRecord& b) { return a.when_s != b.when_s ? a.when_s > b.when_s : a.model < b.model; });
+  if (all.size() > limit) all.resize(limit);
+  return all;
 }
 
 Result<FoundModel> Reader::find(const ContentHash& model) const {

@@ -32,6 +32,8 @@ class Reader {
 
   /// Errors: there is no such model; its record or manifest is damaged.
   Result<FoundModel> find(const ContentHash& model) const;
+  /// What is told of all models, the newest first; at most `limit`. Damaged records are left out. Errors: the folder can't be read.
+  Result<std::vector<ModelRecord>> records(std::size_t limit) const;
   /// One file of a model, without a check of its bytes. Errors: it isn't there, is known to be damaged, or has another size.
   Result<Descriptor> open_file(const SetFile& file) const;
   /// Copies the model's files under their paths into an empty folder, and checks every byte of them. Makes files that their owner may

@@ -1,5 +1,6 @@
 #include "kiosk/link/wanted_deck.h"
 
+#include <cstring>
 #include <variant>
 
 #include <fmt/format.h>
@@ -7,6 +8,13 @@
 #include "kiosk/link/notice_words.h"
 
 namespace prismesh::kiosk::link {
+
+namespace {
+constexpr const char* kStoredPrefix = "stored:";
+}  // namespace
+
+std::string stored_name(const std::string& hash) { return kStoredPrefix + hash; }
+bool is_stored_name(const std::string& path) { return path.starts_with(kStoredPrefix); }
 
 WantedDeck::WantedDeck(std::optional<std::filesystem::path> deck, Connection& connection, FollowedDocument& document,
                        DocumentNumber& number, LinkNotices& notices, notices::Trace trace)
@@ -57,10 +65,14 @@ void WantedDeck::took_state(const ipc::DocumentState& state) {
 
 void WantedDeck::open(const std::filesystem::path& deck, Unsaved unsaved) {
   std::error_code ignored;
-  const std::filesystem::path whole = std::filesystem::absolute(deck, ignored);
-  connection_.progress().begin_opening(whole.filename().string());
+  const bool stored = is_stored_name(deck.string());
+  const std::filesystem::path whole = stored ? deck : std::filesystem::absolute(deck, ignored);
+  connection_.progress().begin_opening(stored ? "the model" : whole.filename().string());
   ipc::Open request;
-  request.path = whole.string();
+  if (stored)
+    request.stored = deck.string().substr(std::strlen(kStoredPrefix));
+  else
+    request.path = whole.string();
   request.discard = unsaved == Unsaved::discard;
   request.keep = unsaved == Unsaved::keep;
   const std::string kept = unsaved == Unsaved::keep ? std::filesystem::path(number_.path()).filename().string() : std::string();
@@ -74,11 +86,12 @@ void WantedDeck::took_opened(const ipc::Answer& answer, const std::filesystem::p
   connection_.progress().clear();
   opening_ = false;
   if (const auto* failed = std::get_if<ipc::Failed>(&answer)) return not_opened(*failed, whole);
-  deck_ = whole;
+  const auto* state = std::get_if<ipc::DocumentState>(&answer);
+  deck_ = state != nullptr ? std::filesystem::path(state->path) : whole;
   document_.opened();
-  trace_.line("document " + whole.string());
+  trace_.line("document " + deck_->string());
   if (!kept.empty()) notices_.say(notice_of_kept_edits(kept));
-  if (const auto* state = std::get_if<ipc::DocumentState>(&answer))
+  if (state != nullptr)
     took_state(*state);
   else
     ask_state();

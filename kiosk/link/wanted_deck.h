@@ -15,6 +15,10 @@ namespace prismesh::kiosk::link {
 /// their journal until that deck is opened again.
 enum class Unsaved : std::uint8_t { refuse, discard, keep };
 
+/// How a model of the store is named where a deck's path stands.
+std::string stored_name(const std::string& hash);
+bool is_stored_name(const std::string& path);
+
 class WantedDeck final : public ConnectionListener {
  public:
   /// `deck`: opened as soon as there is a server, unless it has it open already.

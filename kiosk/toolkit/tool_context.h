@@ -69,6 +69,7 @@ struct ToolOptions {
   std::filesystem::path expressions{};    ///< file of the entered expressions; empty: none
   std::filesystem::path commands_used{};  ///< file of the commands that were found; empty: none
   std::filesystem::path decks_opened{};   ///< file of the decks that were opened; empty: none
+  std::filesystem::path intake{};         ///< socket of prismesh-intake, whose models can be opened; empty: none
   bool follows_others = false;            ///< moves together with other kiosks that do
   std::string title{};                    ///< shown where no tool guides the user
 };

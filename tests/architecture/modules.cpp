@@ -84,7 +84,7 @@ const std::vector<Module>& modules() {
       {"kiosk/panels", {"kiosk/input", "kiosk/notices"}},
       {"kiosk/link", {"kiosk/notices", "ipc/model", "ipc/pen"}},
       {"kiosk/toolkit", {"kiosk/link", "kiosk/panels", "kiosk/render"}},
-      {"kiosk/tools/files", {"kiosk/toolkit"}},
+      {"kiosk/tools/files", {"kiosk/toolkit", "ipc/intake", "ipc/store"}},
       {"kiosk/tools/find", {"kiosk/toolkit"}},
       {"kiosk/tools/comparison", {"kiosk/toolkit"}},
       {"kiosk/tools/contact", {"kiosk/toolkit"}},

@@ -8,8 +8,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "kiosk/link/wanted_deck.h"
 #include "kiosk/tools/files/browse.h"
 #include "kiosk/tools/files/path_box.h"
+#include "kiosk/tools/files/shelf.h"
 #include "tests/kiosk/gui_test.h"
 
 namespace prismesh::kiosk::tools::files {
@@ -207,6 +209,40 @@ TEST_F(PathBox, a_save_takes_a_files_name_and_keeps_typing) {
   open(folder_ / "car.k");
   EXPECT_EQ(entry_.typed, folder_ / "car.k");
   EXPECT_EQ(click(folder_ / "car.k"), std::nullopt) << "nothing is replaced by a click";
+}
+
+TEST(Shelf, tells_of_models_who_sent_them_and_what_they_were_edited_from) {
+  ipc::store::ModelRecord sent;
+  sent.model = ipc::store::sha256("sent");
+  sent.name = "car.k";
+  sent.who = "ann's laptop";
+  sent.when_s = 1'800'000'000;
+  sent.bytes = 12'345'678;
+  ipc::store::ModelRecord edited = sent;
+  edited.model = ipc::store::sha256("edited");
+  edited.who = "(station)";
+  edited.when_s += 7200;
+  edited.derived_from = sent.model;
+  edited.figures = ipc::store::ModelFigures{100, 90, 2, 0, 0};
+  const std::vector<BrowseRow> rows = shelf_of(std::vector{edited, sent}, edited.when_s + 90);
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(rows[0].words, "car.k   from (station), edited from that of ann's laptop");
+  EXPECT_EQ(rows[0].detail, "90 elements, 1 minute ago");
+  EXPECT_EQ(rows[1].words, "car.k   from ann's laptop");
+  EXPECT_EQ(rows[1].detail, "12 MB, 2 hours ago");
+  EXPECT_EQ(rows[1].path, "stored:" + sent.model.hex());
+  EXPECT_TRUE(link::is_stored_name(rows[1].path));
+  EXPECT_FALSE(link::is_stored_name("/decks/stored:1"));
+  EXPECT_THAT(read_shelf("/nowhere/intake.sock"), IsEmpty());
+}
+
+TEST_F(PathBox, lists_models_of_the_store_while_nothing_is_typed) {
+  facts_.shelf = {{"stored:aa", "car.k   from ann", "12 MB, 2 hours ago", false}};
+  open(folder_ / "car.k");
+  EXPECT_EQ(click("stored:aa"), "stored:aa");
+  facts_.dialog = PathDialog::save_as;
+  open(folder_ / "car.k");
+  EXPECT_TRUE(std::ranges::none_of(items_, [](const panels::ScreenItem& item) { return item.name == "file stored:aa"; }));
 }
 
 TEST_F(PathBox, lays_out_only_the_rows_in_sight_of_a_large_folder) {

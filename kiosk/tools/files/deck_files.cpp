@@ -92,7 +92,8 @@ void DeckFiles::ask_about_edits(const std::filesystem::path& deck) {
   to_open_ = deck;
   const std::string open = file_name(about_);
   Question& question = question_.emplace();
-  question.title = fmt::format("Save {} before {} is opened?", open, file_name(deck));
+  const std::string next = link::is_stored_name(deck.string()) ? "the model from the store" : file_name(deck);
+  question.title = fmt::format("Save {} before {} is opened?", open, next);
   question.text = fmt::format(
       "{0} has edits that aren't saved. If you keep them for next time, they come back when {0} is opened again. If you discard them, the "
       "deck stays on disk as it was last saved.",

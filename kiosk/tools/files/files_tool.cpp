@@ -81,6 +81,8 @@ void FilesTool::document_changed() {
   asked_.clear();
   const auto& shown = context_.shown.snapshot;
   if (!shown) return;
+  // The copy of a stored model isn't opened as any other deck: nobody vouches for it.
+  if (const auto& state = context_.link.document.state(); state && !state->stored.empty()) return;
   const ipc::SnapshotInfo& info = shown->info();
   decks_.add(line_of({info.document, info.counts.ok + info.counts.warn + info.counts.fail, info.nodes, info.parts.size()}));
 }
@@ -97,7 +99,8 @@ std::string FilesTool::save_remark() const {
 void FilesTool::draw_dialog(int kind, bool opened, panels::PanelLayout& layout) {
   const auto dialog = static_cast<PathDialog>(kind);
   const std::string deck = context_.shown.snapshot ? context_.shown.snapshot->info().document : std::string();
-  PathFacts facts{dialog, opened, deck, {}, {}, recent_decks(decks_.entries(), kRecentDecks)};
+  if (opened && dialog == PathDialog::open) shelf_ = read_shelf(context_.options.intake);
+  PathFacts facts{dialog, opened, deck, {}, {}, recent_decks(decks_.entries(), kRecentDecks), shelf_};
   if (not_opened_ && dialog == PathDialog::open) {
     facts.tried = not_opened_->deck.string();
     facts.problem = not_opened_->why;
@@ -112,7 +115,7 @@ void FilesTool::draw_dialog(int kind, bool opened, panels::PanelLayout& layout) 
 void FilesTool::enter(PathDialog dialog, const std::string& path) {
   if (dialog == PathDialog::open) {
     std::error_code ignored;
-    asked_ = std::filesystem::absolute(path, ignored).string();
+    asked_ = link::is_stored_name(path) ? path : std::filesystem::absolute(path, ignored).string();
     not_opened_.reset();
     return deck_files_.open(path);
   }

@@ -11,6 +11,7 @@
 #include "kiosk/toolkit/tool_context.h"
 #include "kiosk/tools/files/deck_files.h"
 #include "kiosk/tools/files/path_box.h"
+#include "kiosk/tools/files/shelf.h"
 
 namespace prismesh::kiosk::tools::files {
 
@@ -41,6 +42,7 @@ class FilesTool final : public toolkit::Tool, public toolkit::HasDialogs, public
   DeckFiles deck_files_;
   toolkit::HistoryFile decks_;
   PathEntry entry_;
+  std::vector<BrowseRow> shelf_;                             ///< as of when the box was opened
   std::string asked_;                                        ///< the path that was entered to be opened
   std::optional<link::WantedDeck::NotOpened> not_opened_{};  ///< shown in the box until another one is tried
 };

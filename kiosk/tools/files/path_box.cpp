@@ -71,15 +71,17 @@ std::string begun_for(const PathFacts& facts) {
   return (std::filesystem::current_path(ignored) / "").string();
 }
 
-/// The rows as they stand in the list: recent decks while nothing is typed, the folder above, the folder's entries.
+/// The rows as they stand in the list: recent decks and models of the store while nothing is typed, the folder above, the folder's entries.
 std::vector<BrowseRow> rows_of(const PathFacts& facts, const PathEntry& entry) {
   std::vector<BrowseRow> rows;
-  if (facts.dialog == PathDialog::open && entry.typed == entry.begun)
+  const bool begins = facts.dialog == PathDialog::open && entry.typed == entry.begun;
+  if (begins)
     for (const RecentDeck& deck : facts.recent) {
       const std::filesystem::path path(deck.path);
       rows.push_back({deck.path, path.filename().string() + "   " + path.parent_path().string(),
                       fmt::format("{}, {}", counted(deck.shells, "shell"), counted(deck.parts, "part")), false});
     }
+  if (begins) rows.insert(rows.end(), facts.shelf.begin(), facts.shelf.end());
   const std::filesystem::path folder = std::filesystem::path(entry.typed.substr(0, entry.typed.rfind('/') + 1)).parent_path();
   if (folder.has_parent_path() && folder != folder.parent_path()) rows.push_back({(folder.parent_path() / "").string(), "../", "", true});
   rows.insert(rows.end(), entry.browsed.rows.begin(), entry.browsed.rows.end());

@@ -20,6 +20,7 @@ struct PathFacts {
   std::string tried;               ///< a path that couldn't be opened, to go on with; empty: none
   std::string problem;             ///< why
   std::vector<RecentDeck> recent;  ///< newest first
+  std::vector<BrowseRow> shelf{};  ///< models of the store, newest first
 };
 
 /// What the box remembers from one layout to the next.

@@ -113,6 +113,21 @@ TEST_F(StoreReader, follows_no_links) {
   EXPECT_FALSE(Reader::open(store())->find(record_.model));
 }
 
+TEST_F(StoreReader, lists_records_the_newest_first_without_damaged_ones) {
+  ModelRecord later = record_;
+  later.model = sha256("later");
+  later.when_s += 60;
+  put_text(store() / "models" / later.model.hex(), encode_record(later));
+  put_text(store() / "models" / sha256("damaged").hex(), encode_record(later).substr(3));
+  put_text(store() / "models" / sha256("under another name").hex(), encode_record(later));
+  const auto all = Reader::open(store())->records(10);
+  ASSERT_TRUE(all);
+  ASSERT_EQ(all->size(), 2u);
+  EXPECT_EQ((*all)[0], later);
+  EXPECT_EQ((*all)[1], record_);
+  EXPECT_EQ(Reader::open(store())->records(1)->size(), 1u);
+}
+
 TEST_F(StoreReader, opens_single_names_only) {
   const Result<Folder> folder = Folder::open(store());
   put_text(root_ / "secret", "secret");
