@@ -19,6 +19,7 @@ namespace {
 constexpr double kHashingShare = 0.1;  ///< of the progress bar
 constexpr std::size_t kPushHashPiece = std::size_t{4} << 20;
 constexpr int kRoundsMax = 3;
+constexpr int kConflictsMax = 20;  // in a row: then the station contradicts itself
 
 std::string base64_of(std::string_view text) { return base64_encode(std::as_bytes(std::span(text.data(), text.size()))); }
 
@@ -181,10 +182,12 @@ class Push {
     if (answer->status == 204) {
       const Result<std::uint64_t> now = offset_in(*answer);
       if (!now) return fail(now.error());
+      if (*now <= at) return fail(remote_.station().name, "takes a chunk, but its upload doesn't grow");
+      conflicts_ = 0;
       return std::optional(*now);
     }
     // Bytes of a line that was cut came later than the answer to how far the upload is; or the upload is gone.
-    if (answer->status == 409 || answer->status == 404) return std::optional<std::uint64_t>();
+    if ((answer->status == 409 || answer->status == 404) && ++conflicts_ < kConflictsMax) return std::optional<std::uint64_t>();
     if (answer->status == 460 && at + chunk.size() == file.is.bytes) {
       book_.forget_upload(file.key);
       return fail(file.disk.string(), "changed while it was sent; push it again");
@@ -237,6 +240,7 @@ class Push {
   std::vector<Sending> sending_;
   std::uint64_t all_bytes_ = 0, done_bytes_ = 0, sent_bytes_ = 0;
   double fraction_ = 0;
+  int conflicts_ = 0;
 };
 
 }  // namespace

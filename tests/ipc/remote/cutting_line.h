@@ -42,7 +42,9 @@ inline constexpr std::uint64_t kNeverCut = std::numeric_limits<std::uint64_t>::m
 /// a cable that is pulled.
 class CuttingLine {
  public:
-  CuttingLine(std::uint16_t server, std::function<std::uint64_t()> next_cut) : server_(server), next_cut_(std::move(next_cut)) {
+  /// `delivers`: what was passed on before a cut arrives.
+  CuttingLine(std::uint16_t server, std::function<std::uint64_t()> next_cut, bool delivers = false)
+      : server_(server), next_cut_(std::move(next_cut)), delivers_(delivers) {
     listening_ = listen_on_loopback(port_);
     passing_ = std::thread([this] { pass(); });
   }
@@ -73,7 +75,10 @@ class CuttingLine {
       const int server = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
       const sockaddr_in address = loopback_address(server_);
       if (client >= 0 && ::connect(server, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0) pass_one(client, server);
-      reset(client);
+      if (delivers_)
+        ::close(client);
+      else
+        reset(client);
       reset(server);
     }
   }
@@ -101,6 +106,7 @@ class CuttingLine {
 
   std::uint16_t server_, port_ = 0;
   std::function<std::uint64_t()> next_cut_;
+  bool delivers_ = false;
   int listening_ = -1;
   std::atomic<bool> ends_{false};
   std::atomic<std::uint64_t> to_server_{0}, cuts_{0};

@@ -76,6 +76,8 @@ class HostileStation {
       if (!head.ends_with("\r\n\r\n")) continue;
       const std::string said = answer_(std::exchange(head, {}));
       if (said.empty() || SSL_write(tls, said.data(), static_cast<int>(said.size())) <= 0) return;
+      // What follows is a body, which is no request.
+      if (said.find("Connection: close") != std::string::npos) return;
     }
   }
 

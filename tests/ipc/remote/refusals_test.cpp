@@ -130,6 +130,23 @@ TEST_F(RemoteRefusals, other_bytes_than_the_model_has_are_refused) {
   }
 }
 
+/// A station that begins uploads, and says this of a chunk, always at offset 0.
+std::string contradicting_answer(const std::string& head, const std::string& of_a_chunk) {
+  if (head.starts_with("POST /models")) return "HTTP/1.1 409 No\r\nContent-Length: 0\r\nConnection: close\r\n\r\n";
+  if (head.starts_with("POST /uploads")) return "HTTP/1.1 201 Yes\r\nLocation: /uploads/a\r\nContent-Length: 0\r\n\r\n";
+  if (head.starts_with("HEAD")) return "HTTP/1.1 200 Yes\r\nUpload-Offset: 0\r\n\r\n";
+  return "HTTP/1.1 " + of_a_chunk + "\r\nUpload-Offset: 0\r\nContent-Length: 0\r\n\r\n";
+}
+
+TEST_F(RemoteRefusals, a_station_that_contradicts_itself_is_given_up) {
+  for (const char* of_a_chunk : {"409 No", "404 No", "204 Yes"}) {
+    int asked = 0;
+    HostileStation liar(hostile(), [&](const std::string& head) { return ++asked, contradicting_answer(head, of_a_chunk); });
+    EXPECT_FALSE(push(book(), liar.paired(), write({{"a.k", "text"}}), "a.k", push_options())) << of_a_chunk;
+    EXPECT_LT(asked, 100) << of_a_chunk;
+  }
+}
+
 TEST_F(RemoteRefusals, nonsense_is_a_sentence) {
   for (const std::string answer : {"", "garbage\r\n\r\n", "HTTP/1.1 200 OK\r\nContent-Length: 3\r\n\r\n{]}",
                                    "HTTP/1.1 500 No\r\nContent-Length: 0\r\n\r\n", "HTTP/1.1 200 OK\r\nContent-Length: 99\r\n\r\n{}"}) {

@@ -1,4 +1,5 @@
 // Sending models to a station and fetching them back, over lines that are cut.
+#include "ipc/store/reading.h"
 #include "tests/ipc/remote/remote_rig.h"
 
 namespace prismesh::ipc::remote {
@@ -64,12 +65,16 @@ TEST_F(Remote, another_call_goes_on_where_the_last_one_stopped) {
   PullOptions once_back = pull_options("back");
   once_back.remote.patience = std::chrono::milliseconds(0);
   std::uint64_t cut_back = 600'000;
-  CuttingLine line_back(rig_.intake->port(), [&] { return std::exchange(cut_back, kNeverCut); });
+  CuttingLine line_back(
+      rig_.intake->port(), [&] { return std::exchange(cut_back, kNeverCut); }, true);
   EXPECT_FALSE(pull(station(line_back.port()), "a.k", once_back));
   EXPECT_FALSE(fs::exists(folder() / "back")) << "a model appears whole or not at all";
+  const store::ContentHash hash = store::sha256(texts.at("a.k"));
+  const std::uint64_t kept = fs::file_size(folder() / "back.pulling/sha256" / store::shard_of(hash) / hash.hex());
+  EXPECT_GT(kept, 400'000u);
   const Result<Pulled> pulled = pull(station(line_back.port()), "a.k", once_back);
   ASSERT_TRUE(pulled) << pulled.error().text();
-  EXPECT_LT(pulled->received_bytes, 500'000u);
+  EXPECT_EQ(pulled->received_bytes, 1'000'000 - kept);
   EXPECT_EQ(texts_in(folder() / "back"), texts);
 }
 
