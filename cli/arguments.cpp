@@ -302,6 +302,67 @@ void add_session(Parser& parser) {
   add_unsaved(add("close", Action::close, "close the document"));
 }
 
+void add_station(CLI::App* app, std::string& station) {
+  app->add_option("--station", station, "the station's address, HOST or HOST:PORT (default: the only one that is paired)");
+}
+
+void add_remote(Parser& parser) {
+  const auto [pair_app, pair_options] = add_command<PairOptions>(parser, "pair", "pair this computer with a station", pair);
+  pair_app->add_option("STATION", pair_options->station, "the station's address, HOST or HOST:PORT (default port 7443)")->required();
+  pair_app->add_option("CODE", pair_options->code, "the code that `prismesh intake code` shows at the station")->required();
+  add_optional(pair_app, "--name", pair_options->name, "how the station calls this computer (default: USER@HOST)");
+
+  const auto [push_app, push_options] = add_command<PushOptions>(
+      parser, "push", "send a deck with its includes to a station; called again, it goes on where it stopped", push);
+  names_file(push_app->add_option("DECK", push_options->deck, "the deck's main file"))->required();
+  add_station(push_app, push_options->station);
+  push_app->add_option("--name", push_options->name, "the model's name at the station (default: the main file's)");
+
+  const auto [pull_app, pull_options] =
+      add_command<PullOptions>(parser, "pull", "fetch a model from a station; called again, it goes on where it stopped", pull);
+  pull_app->add_option("MODEL", pull_options->model, "its name, its hash, or six digits or more of the hash's beginning")->required();
+  add_station(pull_app, pull_options->station);
+  add_optional(pull_app, "-o,--output", pull_options->output, "the folder to make (default: named by main file and hash)");
+
+  const auto [watch_app, watch_options] =
+      add_command<WatchOptions>(parser, "watch", "print what is published at a station, until Ctrl-C", watch);
+  add_station(watch_app, watch_options->station);
+
+  const auto [app, options] =
+      add_command<StationsOptions>(parser, "stations", "list the stations that this computer is paired with", stations);
+  app->require_subcommand(0, 1);
+  using Action = StationsOptions::Action;
+  CLI::App* forget_app = app->add_subcommand("forget", "give the token of a station up, and forget the station");
+  forget_app->add_option("STATION", options->station, "the station's address")->required();
+  forget_app->fallthrough();
+  forget_app->parse_complete_callback([o = options] { o->action = Action::forget; });
+  CLI::App* models_app = app->add_subcommand("models", "list a station's models");
+  add_station(models_app, options->station);
+  models_app->fallthrough();
+  models_app->parse_complete_callback([o = options] { o->action = Action::models; });
+}
+
+void add_intake(Parser& parser) {
+  const auto [app, options] =
+      add_command<IntakeOptions>(parser, "intake", "at a station: make pairing codes, list and revoke tokens", intake);
+  app->require_subcommand(1);
+  add_optional(app, "--runtime-dir", options->runtime_directory, "the folder of prismesh-intake's socket");
+  using Action = IntakeOptions::Action;
+  const auto add = [app = app, o = options](const std::string& name, Action action, const std::string& what) {
+    CLI::App* command = app->add_subcommand(name, what);
+    command->fallthrough();
+    command->parse_complete_callback([o, action] { o->action = action; });
+    return command;
+  };
+  CLI::App* code_app = add("code", Action::code, "make a code that pairs one computer, good for five minutes");
+  code_app->add_option("--name", options->name, "the token's name (default: the computer says one)");
+  code_app->add_option("--allow", options->allow, "what the token may do, of read, upload, remove, metrics (default: read,upload)")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"read", "upload", "remove", "metrics"}));
+  add("tokens", Action::tokens, "list the tokens");
+  add("revoke", Action::revoke, "make a token void at once")->add_option("NAME", options->name, "the token's name")->required();
+}
+
 void add_devices(Parser& parser) {
   const auto [app, options] = add_command<DevicesOptions>(
       parser, "devices", "show the eye tracker, the prism servo, the haptic pen and their control loops", devices);
@@ -356,6 +417,8 @@ Result<Action> parse_arguments(std::span<const std::string> args) {
   add_bench(*parser);
   add_render(*parser);
   add_session(*parser);
+  add_remote(*parser);
+  add_intake(*parser);
   add_devices(*parser);
   add_doctor(*parser);
   try {

@@ -123,6 +123,51 @@ struct SessionOptions {
 };
 int session(const SessionOptions& options, const Common& common, const Context& context);
 
+/// Pairs this user's computer with a station.
+struct PairOptions {
+  std::string station;
+  std::string code;
+  std::optional<std::string> name;  ///< of this computer; absent: USER@HOST
+};
+int pair(const PairOptions& options, const Common& common, const Context& context);
+
+struct PushOptions {
+  std::filesystem::path deck;
+  std::string station;  ///< empty: the only one
+  std::string name;     ///< of the model; empty: that of the main file
+};
+int push(const PushOptions& options, const Common& common, const Context& context);
+
+struct PullOptions {
+  std::string model;
+  std::string station;
+  std::optional<std::filesystem::path> output;  ///< a folder
+};
+int pull(const PullOptions& options, const Common& common, const Context& context);
+
+struct StationsOptions {
+  enum class Action : std::uint8_t { list, forget, models };
+  Action action = Action::list;
+  std::string station;
+};
+int stations(const StationsOptions& options, const Common& common, const Context& context);
+
+/// Prints what happens in a station's catalogue, until Ctrl-C.
+struct WatchOptions {
+  std::string station;
+};
+int watch(const WatchOptions& options, const Common& common, const Context& context);
+
+/// The station's side: talks to a running prismesh-intake on this machine.
+struct IntakeOptions {
+  enum class Action : std::uint8_t { code, tokens, revoke };
+  Action action = Action::tokens;
+  std::optional<std::filesystem::path> runtime_directory;
+  std::string name;                                  ///< code: the token's, if it is fixed here; revoke
+  std::vector<std::string> allow{"read", "upload"};  ///< code
+};
+int intake(const IntakeOptions& options, const Common& common, const Context& context);
+
 /// Asks a running deviced.
 struct DevicesOptions {
   std::optional<std::filesystem::path> runtime_directory;

@@ -1,4 +1,5 @@
-// Writes the JSON of --json; scripts rely on its fields. Only json_output.cpp and check_json.cpp include the JSON library. Inner to cli.
+// Writes the JSON of --json; scripts rely on its fields. Only json_output.cpp, check_json.cpp and remote_json.cpp include the JSON library.
+// Inner to cli.
 #pragma once
 
 #include <optional>

@@ -34,7 +34,7 @@ struct BusProtocol {
 }  // namespace
 
 Result<IntakeOptions> intake_options(const drivers::settings::RemoteSettings& settings, const std::filesystem::path& state_directory) {
-  if (settings.port == 0)
+  if (settings.address.empty())
     return fail("prismesh-intake", "the settings don't say where to listen; set remote.listen, like \"0.0.0.0:7443\" (docs/settings.md)");
   IntakeOptions options;
   options.state_directory = state_directory;

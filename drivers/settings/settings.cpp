@@ -189,7 +189,7 @@ Key mode(std::string_view name, ModeSetting& to) {
           }};
 }
 
-/// An address and a port, like "0.0.0.0:7443" or "[::]:7443"; empty: none.
+/// An address and a port, like "0.0.0.0:7443" or "[::]:7443"; empty: none. Port 0: any free one.
 Key address_and_port(std::string_view name, std::string& address, std::uint16_t& port) {
   return {name, [&address, &port](const toml::node& node) -> Problem {
             const Problem wrong = "must be an address and a port in quotes, like \"0.0.0.0:7443\" or \"[::]:7443\"";
@@ -207,7 +207,7 @@ Key address_and_port(std::string_view name, std::string& address, std::uint16_t&
             const bool plain = host.find_first_not_of(in_brackets ? "0123456789abcdefABCDEF:." : "0123456789.") == std::string_view::npos;
             std::uint16_t number = 0;
             const auto [end, error] = std::from_chars(text.data() + colon + 1, text.data() + text.size(), number);
-            if (!plain || host.empty() || error != std::errc() || end != text.data() + text.size() || number == 0) return wrong;
+            if (!plain || host.empty() || error != std::errc() || end != text.data() + text.size()) return wrong;
             address = host;
             port = number;
             return {};

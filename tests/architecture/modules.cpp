@@ -58,6 +58,7 @@ const std::vector<Module>& modules() {
       {"ipc/model", {"ipc/wire", "mesh/document"}},
       {"ipc/store", {"ipc/wire"}},
       {"ipc/intake", {"ipc/wire"}},
+      {"ipc/remote", {"ipc/intake", "ipc/store"}},
 
       {"daemon/common", {"ipc/wire"}},
       {"daemon/import", {"ipc/import", "daemon/common"}},
@@ -102,7 +103,7 @@ const std::vector<Module>& modules() {
         "kiosk/tools/shaping", "kiosk/tools/pen", "kiosk/tools/quality", "kiosk/tools/mesh_operations", "kiosk/tools/parts",
         "kiosk/tools/history", "kiosk/tools/view", "kiosk/calibration", "kiosk/display/kms", "kiosk/display/x11", "drivers/settings"}},
 
-      {"cli", {"ipc/device", "ipc/import", "ipc/model", "ipc/pen", "drivers/settings"}},
+      {"cli", {"ipc/device", "ipc/import", "ipc/model", "ipc/pen", "ipc/remote", "drivers/settings"}},
   };
   return kModules;
 }

@@ -71,12 +71,14 @@ class Demo(unittest.TestCase):
         lines = [line for line in done.stdout.splitlines() if line and not line.startswith(" ")]
         words = [line.split()[0] for line in lines]
         self.assertEqual(words[: len(STEPS)], STEPS)
-        self.assertEqual(words[-5:], ["compared", "saved", "modeld", "doctor", "contact"])
+        self.assertEqual(words[-6:], ["compared", "saved", "modeld", "doctor", "contact", "remote"])
         return {line.split()[0]: line for line in lines}
 
     def test_the_sample_ends_with_none_failing(self):
         done = self.play()
         lines = self.all_steps(done)
+        self.assertIn("the same bytes", done.stdout)
+        self.assertEqual((self.folder / "out" / "remote" / "back" / "sample.k").read_bytes(), (self.folder / "out" / "sample.k").read_bytes())
         failing = [int(count) for count in re.findall(r"fail \d+ -> (\d+)", done.stdout)]
         self.assertGreater(max(failing), 5, "the session makes shells fail before it mends them")
         self.assertTrue(re.search(r"[, ]0 fail$", lines["saved"]), lines["saved"])

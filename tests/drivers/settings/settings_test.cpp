@@ -238,8 +238,9 @@ TEST(Settings, models_come_from_the_network_only_where_an_address_says_so) {
   EXPECT_EQ(remote.hosts, std::vector<std::string>{"station.example"});
   EXPECT_EQ(error_of("[remote]\nlisten = '0.0.0.0:65535'\n"), "accepted");
   EXPECT_EQ(error_of("[remote]\nlisten = ''\n"), "accepted");
+  EXPECT_EQ(error_of("[remote]\nlisten = '0.0.0.0:0'\n"), "accepted");
   for (const char* bad :
-       {"'7443'", "':7443'", "'0.0.0.0'", "'0.0.0.0:0'", "'0.0.0.0:65536'", "'0.0.0.0:x'", "'host:7443'", "'::1:7443'", "'[]:7443'", "5"})
+       {"'7443'", "':7443'", "'0.0.0.0'", "'0.0.0.0:-1'", "'0.0.0.0:65536'", "'0.0.0.0:x'", "'host:7443'", "'::1:7443'", "'[]:7443'", "5"})
     EXPECT_THAT(error_of(std::string("[remote]\nlisten = ") + bad + "\n"),
                 HasSubstr("station.toml:2: remote.listen must be an address and a port"))
         << bad;

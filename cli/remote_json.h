@@ -1,0 +1,25 @@
+// The JSON of --json of the commands about stations; scripts rely on its fields. Inner to cli.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "ipc/intake/messages.h"
+#include "ipc/remote/answers.h"
+#include "ipc/remote/pull.h"
+#include "ipc/remote/push.h"
+#include "ipc/remote/station_book.h"
+
+namespace prismesh::cli {
+
+// Each returns one line without a line break. None has a token.
+std::string paired_json(const ipc::remote::PairedStation& station);
+std::string stations_json(std::span<const ipc::remote::PairedStation> stations);
+std::string models_json(const std::string& station, std::span<const ipc::remote::ListedModel> models);
+std::string pushed_json(const std::string& station, const ipc::remote::Pushed& pushed);
+std::string pulled_json(const std::string& station, const ipc::remote::Pulled& pulled);
+std::string event_json(const std::string& kind, const std::string& model);
+std::string pairing_code_json(const ipc::MadePairingCode& made, const ipc::IntakeInfo& info);
+std::string tokens_json(const ipc::Tokens& tokens);
+
+}  // namespace prismesh::cli
