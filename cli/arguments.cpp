@@ -116,6 +116,10 @@ std::string wrong_gap(const std::string& text) {
   return number && *number >= 0 ? "" : "must be a number of at least 0, not \"" + text + "\"";
 }
 
+std::string wrong_width(const std::string& text) {
+  return positive_number(text) ? "" : "must be a number greater than 0, not \"" + text + "\"";
+}
+
 std::string wrong_thickness(const std::string& text) {
   if (text == "contact" || text == "section" || positive_number(text)) return "";
   return "must be contact, section or a number greater than 0, not \"" + text + "\"";
@@ -192,6 +196,21 @@ void add_reading_commands(Parser& parser) {
           "contact (default): what the deck's contacts say, else as section; section: that of elements and sections; a number: for all "
           "shells")
       ->check(CLI::Validator([](const std::string& text) { return wrong_thickness(text); }, "contact|section|LENGTH"));
+}
+
+void add_flanges(Parser& parser) {
+  const auto [app, options] = add_command<FlangesOptions>(parser, "flanges", "find where sheets run parallel in bands", flanges);
+  names_file(app->add_option("DECK", options->deck, "the deck's main file"))->required();
+  add_optional(app, "--select", options->select, "only flanges with one of these shells, e.g. part:3");
+  app->add_option(
+         "--gap", options->gap,
+         "how much farther apart than by their thickness sheets may be, in the deck's length unit (default: 0); needed where parts "
+         "have no thickness")
+      ->check(CLI::Validator([](const std::string& text) { return wrong_gap(text); }, "LENGTH"));
+  app->add_option_function<std::string>(
+         "--max-width", [options = options](const std::string& text) { options->max_width = positive_number(text); },
+         "wider bands are no flanges, in the deck's length unit (default: 40 times the thickness)")
+      ->check(CLI::Validator([](const std::string& text) { return wrong_width(text); }, "LENGTH"));
 }
 
 /// An option --elements of a command that makes the sample.
@@ -413,6 +432,7 @@ Result<Action> parse_arguments(std::span<const std::string> args) {
   parser->app.set_version_flag("--version", "prismesh " PRISMESH_VERSION);
   add_common(*parser);
   add_reading_commands(*parser);
+  add_flanges(*parser);
   add_writing_commands(*parser);
   add_bench(*parser);
   add_render(*parser);

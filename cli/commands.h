@@ -79,6 +79,14 @@ struct PenetrationsOptions {
 };
 int penetrations(const PenetrationsOptions& options, const Common& common, const Context& context);
 
+struct FlangesOptions {
+  std::filesystem::path deck;
+  std::optional<std::string> select;  ///< an expression
+  double gap = 0;                     ///< deck's length unit, as the width
+  std::optional<double> max_width;
+};
+int flanges(const FlangesOptions& options, const Common& common, const Context& context);
+
 struct SampleOptions {
   std::optional<std::size_t> elements;
   std::filesystem::path output;

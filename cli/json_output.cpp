@@ -171,6 +171,30 @@ std::string distance_json(const Gap& gap) {
       .dump();
 }
 
+std::string flanges_json(const mesh::Model& model, const mesh::connections::Flanges& flanges) {
+  Json list = Json::array();
+  for (const mesh::connections::Flange& flange : flanges.all) {
+    Json parts = Json::array(), middle = Json::array();
+    for (const mesh::PartIndex part : flange.parts)
+      parts.push_back(part.valid() ? Json("part:" + std::to_string((*model.parts)[part.value].id)) : Json(nullptr));
+    for (const mesh::Vec3& place : flange.middle) middle.push_back(point(place));
+    list.push_back({{"parts", std::move(parts)},
+                    {"sheets", flange.sheets()},
+                    {"shells", flange.shells.size()},
+                    {"nodes", flange.nodes.size()},
+                    {"length", flange.length},
+                    {"width", {{"mean", flange.mean_width}, {"min", flange.min_width}}},
+                    {"distance", flange.distance},
+                    {"at", point(flange.centre())},
+                    {"shell", "shell:" + std::to_string(model.shell_ids[flange.shells.front().value])},
+                    {"closed", flange.closed},
+                    {"middle", std::move(middle)}});
+  }
+  Json without = Json::array();
+  for (const mesh::PartIndex part : flanges.without_thickness) without.push_back((*model.parts)[part.value].id);
+  return Json{{"flanges", std::move(list)}, {"without_thickness", std::move(without)}}.dump();
+}
+
 std::string penetrations_json(const mesh::document::Contacts& contacts) {
   Json list = Json::array();
   for (const mesh::document::ContactRegion& region : contacts.regions) {

@@ -11,6 +11,7 @@
 #include "cli/device_figures.h"
 #include "cli/figures.h"
 #include "cli/machine_checks.h"
+#include "mesh/connections/flange.h"
 #include "mesh/document/contacts.h"
 #include "mesh/document/document.h"
 #include "mesh/document/edit_report.h"
@@ -26,6 +27,7 @@ std::string failed_edit_json(const std::string& edit, const std::string& reason)
 std::string replay_json(const std::vector<mesh::document::ReplayStep>& steps, const std::string& deck_hash, bool other_deck);
 std::string diff_json(const Difference& difference);
 std::string distance_json(const Gap& gap);
+std::string flanges_json(const mesh::Model& model, const mesh::connections::Flanges& flanges);
 std::string penetrations_json(const mesh::document::Contacts& contacts);
 std::string bench_json(const BenchReport& report);
 /// Of `doctor`.

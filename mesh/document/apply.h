@@ -11,6 +11,7 @@ namespace prismesh::mesh::document {
 Result<void> apply_edit(const Document& document, const Select& edit, Generation& next, EditReport& report, const Progress& progress);
 Result<void> apply_edit(const Document& document, const SelectRegion& edit, Generation& next, EditReport& report);
 Result<void> apply_edit(const Document& document, const SelectLasso& edit, Generation& next, EditReport& report);
+Result<void> apply_edit(const Document& document, const SelectFlange& edit, Generation& next, EditReport& report, const Progress& progress);
 Result<void> apply_edit(const Document& document, const Grow& edit, Generation& next, EditReport& report);
 Result<void> apply_edit(const Document& document, const Shrink& edit, Generation& next, EditReport& report);
 Result<void> apply_edit(const Document& document, const Invert& edit, Generation& next, EditReport& report);

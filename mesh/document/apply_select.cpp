@@ -4,6 +4,7 @@
 #include "mesh/document/apply.h"
 #include "mesh/document/deck_relations.h"
 #include "mesh/document/edit_targets.h"
+#include "mesh/document/flanges.h"
 #include "mesh/document/part_marks.h"
 #include "mesh/document/selection.h"
 #include "mesh/select/region.h"
@@ -86,6 +87,14 @@ Result<void> apply_edit(const Document& document, const SelectLasso& edit, Gener
   Result<NodeSet> nodes = nodes_in_outline(next, edit);
   if (!nodes) return fail(nodes.error());
   select_into(document, {std::move(*nodes), {}, EntityKind::node}, edit.mode, next, report);
+  return {};
+}
+
+Result<void> apply_edit(const Document& document, const SelectFlange& edit, Generation& next, EditReport& report,
+                        const Progress& progress) {
+  Result<Selection> added = flange_at(next, edit, progress);
+  if (!added) return fail(added.error());
+  select_into(document, std::move(*added), edit.mode, next, report);
   return {};
 }
 

@@ -46,6 +46,15 @@ struct SelectLasso {
   bool visible = false;                        ///< only nodes that no visible part's shell hides in this view
   SelectMode mode = SelectMode::set;
 };
+/// The flange at a place, all its sheets; or the flanges of which at least two sheets are of the parts that `between` names (an expression
+/// of kind part). One of the two is given. Lengths are in the deck's unit.
+struct SelectFlange {
+  std::optional<NodeReference> at;
+  std::optional<std::string> between;
+  double gap = 0;                   ///< sheets may be farther apart by this
+  std::optional<double> max_width;  ///< absent: 40 times the thickness
+  SelectMode mode = SelectMode::set;
+};
 struct Grow {
   int rings = 1;
 };
@@ -81,7 +90,7 @@ inline constexpr std::string_view kDeckCriteria = "deck";
 
 /// The nodes that an edit acts on: an expression of kind node, or a recipe that selects, evaluated when the edit is applied; its mode is
 /// ignored. A recipe of a region by coordinates finds the same region on a remeshed variant.
-using TargetNodes = std::variant<std::string, Select, SelectRegion, SelectLasso>;
+using TargetNodes = std::variant<std::string, Select, SelectRegion, SelectLasso, SelectFlange>;
 
 /// Applies the edit mirrored as well: to the images of the nodes acted on, with mirrored displacements. A node on the plane stays on it.
 struct Symmetry {
@@ -216,8 +225,8 @@ struct TakeBranch {
   std::uint64_t number = 0;  ///< Branch::number
 };
 
-using Edit = std::variant<Select, SelectRegion, SelectLasso, Grow, Shrink, Invert, SetParts, SetTargetSize, SetCriteria, Translate, Lift,
-                          Slide, Rotate, Move, Relax, Repair, Restructure, Separate, Undo, Redo, TakeBranch>;
+using Edit = std::variant<Select, SelectRegion, SelectLasso, SelectFlange, Grow, Shrink, Invert, SetParts, SetTargetSize, SetCriteria,
+                          Translate, Lift, Slide, Rotate, Move, Relax, Repair, Restructure, Separate, Undo, Redo, TakeBranch>;
 
 /// The Shaping of a shaping edit; null for the others.
 const Shaping* shaping_of(const Edit& edit);

@@ -149,6 +149,8 @@ PRISMESH_JSON_OBJECT(mesh::document::SelectRegion, f.required("at", m.at), f("an
                      f("across_welds", m.across_welds), f("mode", m.mode));
 PRISMESH_JSON_OBJECT(mesh::document::SelectLasso, f.required("outline", m.outline, kOutline), f.required("view", m.view),
                      f("visible", m.visible), f("mode", m.mode));
+PRISMESH_JSON_OBJECT(mesh::document::SelectFlange, f("at", m.at), f("between", m.between), f("gap", m.gap, kNotNegative),
+                     f("max_width", m.max_width, kPositive), f("mode", m.mode));
 PRISMESH_JSON_OBJECT(mesh::document::Grow, f("rings", m.rings, kRings));
 PRISMESH_JSON_OBJECT(mesh::document::Shrink, f("rings", m.rings, kRings));
 PRISMESH_JSON_OBJECT(mesh::document::Invert, );

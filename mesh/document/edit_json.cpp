@@ -170,13 +170,16 @@ Problem Definition<document::TargetNodes>::read(const Json& json, document::Targ
   const Result<document::Edit> blank = document::blank_edit(json);
   if (!blank) return "has a wrong recipe: " + blank.error().message;
   const bool selects = std::holds_alternative<document::Select>(*blank) || std::holds_alternative<document::SelectRegion>(*blank) ||
-                       std::holds_alternative<document::SelectLasso>(*blank);
-  if (!selects) return "must be a recipe that selects: select, select_region or select_lasso, not " + std::string(document::name(*blank));
+                       std::holds_alternative<document::SelectLasso>(*blank) || std::holds_alternative<document::SelectFlange>(*blank);
+  if (!selects)
+    return "must be a recipe that selects: select, select_region, select_lasso or select_flange, not " +
+           std::string(document::name(*blank));
   Result<document::Edit> recipe = document::edit_from_json(json);
   if (!recipe) return "has a wrong recipe: " + recipe.error().message;
   if (auto* select = std::get_if<document::Select>(&*recipe)) value = std::move(*select);
   if (auto* region = std::get_if<document::SelectRegion>(&*recipe)) value = *region;
   if (auto* lasso = std::get_if<document::SelectLasso>(&*recipe)) value = std::move(*lasso);
+  if (auto* flange = std::get_if<document::SelectFlange>(&*recipe)) value = std::move(*flange);
   return std::nullopt;
 }
 

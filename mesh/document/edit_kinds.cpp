@@ -17,6 +17,7 @@ std::span<const EditKind> edit_kinds() {
         {"select", selection, Select{}},
         {"select_region", selection, SelectRegion{}},
         {"select_lasso", selection, SelectLasso{}},
+        {"select_flange", selection, SelectFlange{}},
         {"grow", selection, Grow{}},
         {"shrink", selection, Shrink{}},
         {"invert", selection, Invert{}},

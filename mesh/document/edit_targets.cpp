@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "mesh/document/deck_relations.h"
+#include "mesh/document/flanges.h"
 #include "mesh/document/joined_sheets.h"
 #include "mesh/document/part_marks.h"
 #include "mesh/model/adjacency.h"
@@ -19,19 +20,6 @@
 #include "mesh/select/visible.h"
 
 namespace prismesh::mesh::document {
-
-Result<NodeIndex> find_referenced_node(const Model& model, const NodeReference& reference) {
-  if (model.node_count() == 0) return fail("", "the model has no nodes");
-  if (const auto* point = std::get_if<std::array<double, 3>>(&reference))
-    return select::nearest_node(model, Vec3((*point)[0], (*point)[1], (*point)[2]));
-  const std::int64_t id = std::get<std::int64_t>(reference);
-  const NodeIndex node = model.find_node(id);
-  if (node.valid()) return node;
-  const IdIndex& ids = *model.node_index;
-  std::size_t rank = std::min(ids.lower_bound(id), ids.size() - 1);
-  if (rank > 0 && ids.at(rank).first > id && id - ids.at(rank - 1).first <= ids.at(rank).first - id) --rank;
-  return fail("", "there is no node " + std::to_string(id) + "; the nearest id is " + std::to_string(ids.at(rank).first));
-}
 
 namespace {
 
@@ -107,9 +95,10 @@ Result<NodeSet> nodes_at(const Generation& generation, const TargetNodes& target
   if (const auto* expression = std::get_if<std::string>(&target)) return expression_nodes(*expression, select::EntityKind::node);
   if (const auto* recipe = std::get_if<Select>(&target)) return expression_nodes(recipe->expr, recipe->kind);
   if (const auto* lasso = std::get_if<SelectLasso>(&target)) return nodes_in_outline(generation, *lasso);
-  Result<Selection> region = region_at(generation, std::get<SelectRegion>(target));
-  if (!region) return fail(region.error());
-  return std::move(region->nodes);
+  const auto* flange = std::get_if<SelectFlange>(&target);
+  Result<Selection> found = flange != nullptr ? flange_at(generation, *flange) : region_at(generation, std::get<SelectRegion>(target));
+  if (!found) return fail(found.error());
+  return std::move(found->nodes);
 }
 
 }  // namespace prismesh::mesh::document

@@ -4,13 +4,11 @@
 #include "base/error.h"
 #include "mesh/document/edit.h"
 #include "mesh/document/generation.h"
+#include "mesh/document/referenced_node.h"
 #include "mesh/document/selection.h"
 #include "mesh/model/node_set.h"
 
 namespace prismesh::mesh::document {
-
-/// A node by id, or the nearest to coordinates. Errors: no such node.
-Result<NodeIndex> find_referenced_node(const Model& model, const NodeReference& reference);
 
 /// The nodes that `target` names on this generation. Errors: those of the expression, no such node, nothing there.
 Result<NodeSet> nodes_at(const Generation& generation, const TargetNodes& target);

@@ -25,6 +25,9 @@ TEST(EditJson, every_edit_reads_its_example) {
           R"({"edit":"select","expr":"3","kind":"part","mode":"add"})",
           R"({"edit":"select_region","at":17,"angle":30})",
           R"({"edit":"select_region","at":[1,2.5,-3e2]})",
+          R"({"edit":"select_flange","at":17})",
+          R"({"edit":"select_flange","between":"1,2","gap":0.5,"max_width":30,"mode":"add"})",
+          R"({"edit":"lift","distance":1,"on":{"edit":"select_flange","at":[1,2,3],"gap":1}})",
           R"({"edit":"select_lasso","outline":[[0,0],[1,0],[0,1]],"view":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1],"visible":false})",
           R"({"edit":"grow","rings":3})",
           R"({"edit":"shrink"})",
@@ -114,6 +117,9 @@ TEST(EditJson, names_the_wrong_type) {
   EXPECT_THAT(why_not(R"({"edit":"select_region","at":1.5})"), HasSubstr("a node's id or its coordinates"));
   EXPECT_THAT(why_not(R"({"edit":"select_region","at":18446744073709551615})"), HasSubstr("a node's id"));
   EXPECT_THAT(why_not(R"({"edit":"select_region","at":1,"angle":181})"), HasSubstr("between 0"));
+  EXPECT_THAT(why_not(R"({"edit":"select_flange","at":"node:1"})"), HasSubstr("a node's id or its coordinates"));
+  EXPECT_THAT(why_not(R"({"edit":"select_flange","at":1,"gap":-1})"), HasSubstr("\"gap\" must be"));
+  EXPECT_THAT(why_not(R"({"edit":"select_flange","at":1,"max_width":0})"), HasSubstr("greater than 0"));
   EXPECT_THAT(why_not(R"({"edit":"lift","distance":1,"max_move":0})"), HasSubstr("greater than 0"));
   EXPECT_THAT(why_not(R"({"edit":"lift","distance":1,"falloff":{"along":[0,0,0]}})"), HasSubstr("must be a direction"));
   EXPECT_THAT(why_not(R"({"edit":"lift"})"), HasSubstr("lift needs the field \"distance\""));

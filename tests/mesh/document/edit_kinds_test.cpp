@@ -35,7 +35,8 @@ TEST(EditKinds, each_alternative_of_edit_has_a_kind_and_each_kind_its_own_name) 
 }
 
 TEST(EditKinds, groups_say_what_an_edit_changes) {
-  EXPECT_THAT(names_of(EditGroup::selection), ElementsAre("grow", "invert", "select", "select_lasso", "select_region", "shrink"));
+  EXPECT_THAT(names_of(EditGroup::selection),
+              ElementsAre("grow", "invert", "select", "select_flange", "select_lasso", "select_region", "shrink"));
   EXPECT_THAT(names_of(EditGroup::parts),
               ElementsAre("hide", "lock", "only", "reverse", "set_criteria", "set_target_size", "show", "unlock"));
   EXPECT_THAT(names_of(EditGroup::shaping), ElementsAre("lift", "move", "rotate", "slide", "translate"));
@@ -66,6 +67,8 @@ TEST(EditKinds, say_what_they_have_to_do_with_the_selection) {
   };
   EXPECT_EQ(use(R"({"edit":"select","expr":"1"})"), "writes");
   EXPECT_EQ(use(R"({"edit":"select_region","at":1,"mode":"add"})"), "readswrites");
+  EXPECT_EQ(use(R"({"edit":"select_flange","at":1})"), "writes");
+  EXPECT_EQ(use(R"({"edit":"select_flange","at":1,"mode":"subtract"})"), "readswrites");
   EXPECT_EQ(use(R"({"edit":"invert"})"), "readswrites");
   EXPECT_EQ(use(R"({"edit":"hide"})"), "reads");
   EXPECT_EQ(use(R"({"edit":"hide","on":"1"})"), "");
