@@ -99,7 +99,9 @@ TEST_F(RemoteCommands, tokens_are_the_users_own_and_end_when_they_are_revoked) {
 TEST_F(RemoteCommands, forgetting_a_station_makes_the_token_void_there) {
   const std::string address = pair_as("ann");
   EXPECT_THAT(prismesh({"intake", "tokens", "--runtime-dir", path("run"), "--json"}).json().at("tokens"), ::testing::SizeIs(1));
-  EXPECT_EQ(prismesh({"stations", "forget", address}).err, "");
+  const Outcome forgotten = prismesh({"stations", "forget", address, "--json"});
+  EXPECT_EQ(forgotten.err, "");
+  EXPECT_EQ(forgotten.json(), (nlohmann::json{{"station", address}, {"token_is_void", true}}));
   EXPECT_THAT(prismesh({"intake", "tokens", "--runtime-dir", path("run"), "--json"}).json().at("tokens"), ::testing::IsEmpty());
 }
 
