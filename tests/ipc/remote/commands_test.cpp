@@ -24,7 +24,8 @@ class RemoteCommands : public Cli {
         std::vector<std::string>{(test::programs_folder() / "prismesh-intake").string(), "--runtime-dir", path("run"), "--state-dir",
                                  path("state"), "--config", path("station.toml")},
         std::map<std::string, std::string>());
-    for (int tries = 0; tries < 500 && !exists("run/intake.sock"); ++tries) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    for (int tries = 0; tries < 500 && prismesh({"intake", "tokens", "--runtime-dir", path("run")}).status != kDone; ++tries)
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   void TearDown() override {
     station_.reset();
