@@ -70,7 +70,11 @@ int intake(const IntakeOptions& options, const Common& common, const Context& co
     say(context, done.error());
     return kFailed;
   }
-  if (options.action == IntakeOptions::Action::revoke && !common.json) context.out << "revoked " << printable(options.name) << '\n';
+  if (options.action != IntakeOptions::Action::revoke) return kDone;
+  if (common.json)
+    context.out << revoked_json(options.name) << '\n';
+  else
+    context.out << "revoked " << printable(options.name) << '\n';
   return kDone;
 }
 

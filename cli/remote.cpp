@@ -105,7 +105,7 @@ int list_models(const std::string& wanted, const Common& common, const Context& 
 }
 
 /// The station is told too, if it can be reached.
-int forget_station(const std::string& name, const Context& context) {
+int forget_station(const std::string& name, const Common& common, const Context& context) {
   const Result<remote::StationBook> book = remote::StationBook::open();
   if (!book) return failed(context, book.error());
   const Result<remote::PairedStation> station = book->find(name);
@@ -117,7 +117,10 @@ int forget_station(const std::string& name, const Context& context) {
   if (!is_void)
     say(context, Error{station->name, 0,
                        "note: it couldn't be told; make the token void there: prismesh intake revoke '" + station->token_name + "'"});
-  context.out << "forgot " << printable(station->name) << '\n';
+  if (common.json)
+    context.out << forgotten_json(station->name, is_void) << '\n';
+  else
+    context.out << "forgot " << printable(station->name) << '\n';
   return kDone;
 }
 
@@ -197,7 +200,7 @@ int pull(const PullOptions& options, const Common& common, const Context& contex
 
 int stations(const StationsOptions& options, const Common& common, const Context& context) {
   if (options.action == StationsOptions::Action::models) return list_models(options.station, common, context);
-  if (options.action == StationsOptions::Action::forget) return forget_station(options.station, context);
+  if (options.action == StationsOptions::Action::forget) return forget_station(options.station, common, context);
   const Result<remote::StationBook> book = remote::StationBook::open();
   if (!book) return failed(context, book.error());
   const Result<std::vector<remote::PairedStation>> known = book->stations();

@@ -74,6 +74,12 @@ std::string pulled_json(const std::string& station, const remote::Pulled& pulled
   return object.dump();
 }
 
+std::string forgotten_json(const std::string& station, bool token_is_void) {
+  return OrderedJson{{"station", printable(station)}, {"token_is_void", token_is_void}}.dump();
+}
+
+std::string revoked_json(const std::string& name) { return OrderedJson{{"revoked", printable(name)}}.dump(); }
+
 std::string event_json(const std::string& kind, const std::string& model) {
   return OrderedJson{{"event", printable(kind)}, {"model", model}}.dump();
 }

@@ -24,7 +24,8 @@ class RemoteCommands : public Cli {
         std::vector<std::string>{(test::programs_folder() / "prismesh-intake").string(), "--runtime-dir", path("run"), "--state-dir",
                                  path("state"), "--config", path("station.toml")},
         std::map<std::string, std::string>());
-    for (int tries = 0; tries < 500 && !exists("run/intake.sock"); ++tries) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    for (int tries = 0; tries < 500 && prismesh({"intake", "tokens", "--runtime-dir", path("run")}).status != kDone; ++tries)
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   void TearDown() override {
     station_.reset();
@@ -99,7 +100,9 @@ TEST_F(RemoteCommands, tokens_are_the_users_own_and_end_when_they_are_revoked) {
 TEST_F(RemoteCommands, forgetting_a_station_makes_the_token_void_there) {
   const std::string address = pair_as("ann");
   EXPECT_THAT(prismesh({"intake", "tokens", "--runtime-dir", path("run"), "--json"}).json().at("tokens"), ::testing::SizeIs(1));
-  EXPECT_EQ(prismesh({"stations", "forget", address}).err, "");
+  const Outcome forgotten = prismesh({"stations", "forget", address, "--json"});
+  EXPECT_EQ(forgotten.err, "");
+  EXPECT_EQ(forgotten.json(), (nlohmann::json{{"station", address}, {"token_is_void", true}}));
   EXPECT_THAT(prismesh({"intake", "tokens", "--runtime-dir", path("run"), "--json"}).json().at("tokens"), ::testing::IsEmpty());
 }
 

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <openssl/ssl.h>
+#include <pthread.h>
+#include <signal.h>
 
 #include <functional>
 #include <string>
@@ -55,6 +57,11 @@ class HostileStation {
 
  private:
   void serve() {
+    // OpenSSL writes to clients that have gone.
+    sigset_t pipe;
+    sigemptyset(&pipe);
+    sigaddset(&pipe, SIGPIPE);
+    pthread_sigmask(SIG_BLOCK, &pipe, nullptr);
     while (!ends_) {
       pollfd waiting{listening_, POLLIN, 0};
       if (::poll(&waiting, 1, 20) != 1) continue;
