@@ -34,7 +34,7 @@ struct Import {
   std::string main;          ///< the main file's name in the folder
   std::string shown_folder;  ///< stands for the folder in messages and in the deck's paths
   ImportLimits limits;
-  std::vector<StandIn> stand_ins;
+  std::vector<StandIn> stand_ins{};
 };
 
 /// Reads the deck once more and makes the text that an edited model of it needs. Its descriptors: the folder of the main file; what the
