@@ -161,6 +161,8 @@ class Pull {
     if (!answer) return remote_.wait_after(answer.error());
     if (answer->status != 200 && answer->status != 206) return fail(remote_.refusal(*answer, file.path));
     if (at == before) return fail(remote_.station().name, "gives nothing of " + file.path);
+    // A quick line never waits, so it wasn't asked meanwhile.
+    if (!told()) return fail(cancelled());
     return {};
   }
 

@@ -184,6 +184,9 @@ class Push {
       if (!now) return fail(now.error());
       if (*now <= at) return fail(remote_.station().name, "takes a chunk, but its upload doesn't grow");
       conflicts_ = 0;
+      advance(*now);
+      // A quick line never waits, so it wasn't asked meanwhile.
+      if (!told()) return fail(cancelled());
       return std::optional(*now);
     }
     // Bytes of a line that was cut came later than the answer to how far the upload is; or the upload is gone.
