@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -94,9 +95,26 @@ bool all_differ(std::vector<Index> indices) {
 /// A shell that was removed again has no nodes.
 bool is_shell(const ShellNodes& shell, std::size_t nodes) { return !shell.node[0].valid() || all_below(shell, nodes); }
 
+/// The used parents come first; behind them there is none.
 bool comes_from(const NodeOrigin& origin, std::size_t nodes) {
   const int parents = origin.count();
-  return parents > 0 && std::all_of(origin.parent.begin(), origin.parent.begin() + parents, [&](NodeIndex p) { return p.value < nodes; });
+  for (int p = 0; p < 4; ++p) {
+    const auto at = static_cast<std::size_t>(p);
+    if (p < parents ? origin.parent[at].value >= nodes || !(origin.weight[at] > 0 && origin.weight[at] <= 1) : origin.parent[at].valid())
+      return false;
+  }
+  return parents > 0;
+}
+
+bool all_finite(const std::vector<Vec3>& points) {
+  return std::all_of(points.begin(), points.end(), [](const Vec3& point) { return point.allFinite(); });
+}
+
+/// Whether they are ids that nothing has yet.
+bool are_new(std::vector<std::int64_t> ids, const std::shared_ptr<const mesh::IdIndex>& taken) {
+  std::sort(ids.begin(), ids.end());
+  return (ids.empty() || ids.front() > 0) && std::adjacent_find(ids.begin(), ids.end()) == ids.end() &&
+         std::none_of(ids.begin(), ids.end(), [&](std::int64_t id) { return taken->find(id) != mesh::IdIndex::kNotFound; });
 }
 
 /// What doesn't fit the model; empty: all fits.
@@ -106,6 +124,9 @@ std::string fault_of(const ModelChange& change, const Model& original) {
     return "a moved node isn't in the deck";
   if (change.node_ids.size() != change.node_positions.size() || change.node_ids.size() != change.node_origins.size())
     return "added nodes lack ids, places or origins";
+  if (!all_finite(change.moved_to) || !all_finite(change.node_positions)) return "a node is nowhere";
+  if (!are_new(change.node_ids, original.node_index) || !are_new(change.shell_ids, original.shell_index))
+    return "something added has an id that isn't free";
   for (std::size_t n = 0; n < change.node_origins.size(); ++n)
     if (!comes_from(change.node_origins[n], original.node_count() + n)) return "an added node comes from none before it";
   if (change.shell_ids.size() != change.shell_nodes.size() || change.shell_ids.size() != change.shell_parents.size())

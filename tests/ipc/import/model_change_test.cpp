@@ -101,6 +101,17 @@ TEST_F(ModelChange, that_does_not_fit_is_told) {
   EXPECT_THAT(refusal([](auto& bytes) { bytes.push_back(std::byte{0}); }), HasSubstr("something follows its end"));
   EXPECT_THAT(refusal([](auto& bytes) { bytes[kFirstMoved] = std::byte{77}; }), HasSubstr("a moved node isn't in the deck"));
   EXPECT_THAT(refusal([](auto& bytes) { bytes[8] = std::byte{0xff}; }), HasSubstr("longer than what follows"));
+  // Behind: the moved node, its place; ids, places and origins of the added node.
+  constexpr std::size_t kId = kFirstMoved + 4 + 8 + 24 + 8, kPlace = kId + 8 + 8, kParents = kPlace + 24 + 8;
+  EXPECT_THAT(refusal([](auto& bytes) { bytes[kId] = std::byte{1}; }), HasSubstr("id that isn't free"));
+  EXPECT_THAT(refusal([](auto& bytes) { std::fill_n(bytes.begin() + kPlace, 8, std::byte{0xff}); }), HasSubstr("nowhere"));
+  EXPECT_THAT(refusal([](auto& bytes) { bytes[kParents] = std::byte{77}; }), HasSubstr("comes from none before it"));
+  EXPECT_THAT(refusal([](auto& bytes) {
+                std::fill_n(bytes.begin() + kParents + 12, 4, std::byte{0});
+                bytes[kParents + 12] = std::byte{77};
+              }),
+              HasSubstr("comes from none before it"))
+      << "a parent behind those that count";
 }
 
 }  // namespace
