@@ -38,11 +38,12 @@ IntakeClient::IntakeClient(IntakeClient&&) noexcept = default;
 IntakeClient& IntakeClient::operator=(IntakeClient&&) noexcept = default;
 IntakeClient::~IntakeClient() = default;
 
-Result<IntakeClient> IntakeClient::connect(const std::filesystem::path& socket, const std::string& program) {
+Result<IntakeClient> IntakeClient::connect(const std::filesystem::path& socket, const std::string& program,
+                                           std::chrono::milliseconds patience) {
   Result<Descriptor> connected = connect_to(socket, "start it with `prismesh-intake`");
   if (!connected) return fail(std::move(connected.error()));
   IntakeClient client(std::make_unique<Impl>(std::move(*connected), socket));
-  const Result<IntakeAnswer> welcome = client.call(IntakeHello{kIntakeProtocolVersion, program}, kGreetingPatience);
+  const Result<IntakeAnswer> welcome = client.call(IntakeHello{kIntakeProtocolVersion, program}, patience);
   if (!welcome) return fail(welcome.error());
   if (!std::holds_alternative<IntakeWelcome>(*welcome)) return fail(socket.string(), "what listens there isn't the intake daemon");
   return client;

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "ipc/intake/messages.h"
+#include "ipc/wire/greeting_patience.h"
 
 namespace prismesh::ipc {
 
@@ -17,8 +18,10 @@ std::filesystem::path intake_socket_path(const std::optional<std::filesystem::pa
 
 class IntakeClient {
  public:
-  /// Connects and exchanges hellos. Errors: nobody listens (names the socket and says how to start), other protocol version.
-  static Result<IntakeClient> connect(const std::filesystem::path& socket, const std::string& program);
+  /// Connects and exchanges hellos, waiting so long for the other's. Errors: nobody listens (names the socket and says how to start), or
+  /// answers; other protocol version.
+  static Result<IntakeClient> connect(const std::filesystem::path& socket, const std::string& program,
+                                      std::chrono::milliseconds patience = kGreetingPatience);
   IntakeClient(IntakeClient&&) noexcept;
   IntakeClient& operator=(IntakeClient&&) noexcept;
   ~IntakeClient();

@@ -5,6 +5,9 @@
 #include <fstream>
 #include <vector>
 
+#include <sys/socket.h>
+#include <sys/un.h>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -234,6 +237,18 @@ TEST(Shelf, tells_of_models_who_sent_them_and_what_they_were_edited_from) {
   EXPECT_TRUE(link::is_stored_name(rows[1].path));
   EXPECT_FALSE(link::is_stored_name("/decks/stored:1"));
   EXPECT_THAT(read_shelf("/nowhere/intake.sock"), IsEmpty());
+}
+
+TEST(Shelf, is_empty_where_somebody_listens_but_never_answers) {
+  const Folder folder;
+  const std::string socket = folder / "intake.sock";
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  socket.copy(address.sun_path, sizeof address.sun_path - 1);
+  const ipc::Descriptor listening(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  ASSERT_EQ(::bind(listening.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+  ASSERT_EQ(::listen(listening.get(), 4), 0);
+  EXPECT_THAT(read_shelf(socket), IsEmpty());
 }
 
 TEST_F(PathBox, lists_models_of_the_store_while_nothing_is_typed) {

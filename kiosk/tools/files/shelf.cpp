@@ -17,6 +17,8 @@ namespace prismesh::kiosk::tools::files {
 namespace {
 
 constexpr std::size_t kMostModels = 50;
+/// The kiosk stands still meanwhile. systemd listens for an intake that can't start, and nobody answers there.
+constexpr std::chrono::milliseconds kPatience{300};
 
 std::string age_words(std::int64_t seconds) {
   if (seconds < 60) return "just now";
@@ -49,9 +51,9 @@ std::vector<BrowseRow> shelf_of(std::span<const ipc::store::ModelRecord> records
 std::vector<BrowseRow> read_shelf(const std::filesystem::path& intake_socket) {
   std::error_code missing;
   if (intake_socket.empty() || !std::filesystem::exists(intake_socket, missing)) return {};
-  Result<ipc::IntakeClient> intake = ipc::IntakeClient::connect(intake_socket, "prismesh-kiosk");
+  Result<ipc::IntakeClient> intake = ipc::IntakeClient::connect(intake_socket, "prismesh-kiosk", kPatience);
   if (!intake) return {};
-  const Result<ipc::IntakeAnswer> answer = intake->call(ipc::GetIntake{}, std::chrono::seconds(1));
+  const Result<ipc::IntakeAnswer> answer = intake->call(ipc::GetIntake{}, kPatience);
   const auto* info = answer ? std::get_if<ipc::IntakeInfo>(&*answer) : nullptr;
   if (info == nullptr) return {};
   const Result<ipc::store::Reader> store = ipc::store::Reader::open(info->store);
