@@ -198,6 +198,69 @@ void add_reading_commands(Parser& parser) {
       ->check(CLI::Validator([](const std::string& text) { return wrong_thickness(text); }, "contact|section|LENGTH"));
 }
 
+/// "1.5,-2,0"; nothing where the text isn't three finite numbers.
+std::optional<mesh::Vec3> three_numbers(const std::string& text) {
+  mesh::Vec3 numbers;
+  std::size_t begin = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::size_t comma = text.find(',', begin);
+    if ((comma == std::string::npos) != (axis == 2)) return std::nullopt;
+    const std::optional<double> number = finite_number(text.substr(begin, comma - begin));
+    if (!number) return std::nullopt;
+    numbers[axis] = *number;
+    begin = comma + 1;
+  }
+  return numbers;
+}
+
+/// "x=120", or six numbers: a point and a normal. Nothing where it is neither.
+std::optional<mesh::measure::Plane> plane_from(const std::string& text) {
+  const std::size_t axis = text.empty() ? std::string::npos : std::string_view("xyz").find(text[0]);
+  if (axis != std::string::npos && text.size() > 1 && text[1] == '=') {
+    const std::optional<double> place = finite_number(text.substr(2));
+    if (!place) return std::nullopt;
+    const mesh::Vec3 normal = mesh::Vec3::Unit(static_cast<int>(axis));
+    return mesh::measure::Plane{normal * *place, normal};
+  }
+  std::size_t middle = std::string::npos;
+  for (int commas = 0; commas < 3; ++commas) {
+    middle = text.find(',', middle + 1);
+    if (middle == std::string::npos) return std::nullopt;
+  }
+  const std::optional<mesh::Vec3> at = three_numbers(text.substr(0, middle)), normal = three_numbers(text.substr(middle + 1));
+  if (!at || !normal) return std::nullopt;
+  return mesh::measure::Plane{*at, *normal};
+}
+
+std::string wrong_plane(const std::string& text) {
+  return plane_from(text) ? "" : "must be like x=120, or six numbers X,Y,Z,NX,NY,NZ: a point and a normal, not \"" + text + "\"";
+}
+
+void add_measuring(Parser& parser) {
+  const auto [measure_app, measure_options] =
+      add_command<MeasureOptions>(parser, "measure", "measure between two nodes, or the angle and the radius at three", measure_nodes);
+  names_file(measure_app->add_option("DECK", measure_options->deck, "the deck's main file"))->required();
+  measure_app->add_option("NODES", measure_options->nodes, "the ids of two or three nodes; the angle is at the second")
+      ->required()
+      ->expected(2, 3);
+
+  const auto [section_app, section_options] =
+      add_command<CrossSectionOptions>(parser, "cross-section", "cut the shells with a plane", cross_section);
+  names_file(section_app->add_option("DECK", section_options->deck, "the deck's main file"))->required();
+  section_app
+      ->add_option_function<std::string>(
+          "--plane",
+          [options = section_options](const std::string& text) {
+            if (const auto plane = plane_from(text)) options->plane = *plane;
+          },
+          "x=120, y=.. or z=.., in the deck's length unit, or X,Y,Z,NX,NY,NZ: a point and a normal")
+      ->check(CLI::Validator([](const std::string& text) { return wrong_plane(text); }, "PLANE"))
+      ->required();
+  add_optional(section_app, "--parts", section_options->parts, "only these parts, an expression, e.g. 3,7-9");
+  add_optional(section_app, "-o,--output", section_options->output,
+               "also write the curves to this file as CSV: curve, part, closed, x, y, z");
+}
+
 void add_flanges(Parser& parser) {
   const auto [app, options] = add_command<FlangesOptions>(parser, "flanges", "find where sheets run parallel in bands", flanges);
   names_file(app->add_option("DECK", options->deck, "the deck's main file"))->required();
@@ -433,6 +496,7 @@ Result<Action> parse_arguments(std::span<const std::string> args) {
   add_common(*parser);
   add_reading_commands(*parser);
   add_flanges(*parser);
+  add_measuring(*parser);
   add_writing_commands(*parser);
   add_bench(*parser);
   add_render(*parser);

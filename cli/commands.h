@@ -14,6 +14,7 @@
 #include "base/units.h"
 #include "cli/context.h"
 #include "mesh/document/judging_rules.h"
+#include "mesh/measure/cross_section.h"
 
 namespace prismesh::cli {
 
@@ -68,6 +69,20 @@ struct DistanceOptions {
   std::string to;
 };
 int distance(const DistanceOptions& options, const Common& common, const Context& context);
+
+struct MeasureOptions {
+  std::filesystem::path deck;
+  std::vector<std::int64_t> nodes;  ///< ids, two or three
+};
+int measure_nodes(const MeasureOptions& options, const Common& common, const Context& context);
+
+struct CrossSectionOptions {
+  std::filesystem::path deck;
+  mesh::measure::Plane plane;
+  std::optional<std::string> parts;             ///< an expression: only these parts
+  std::optional<std::filesystem::path> output;  ///< the curves as CSV
+};
+int cross_section(const CrossSectionOptions& options, const Common& common, const Context& context);
 
 struct PenetrationsOptions {
   std::filesystem::path deck;

@@ -171,6 +171,36 @@ std::string distance_json(const Gap& gap) {
       .dump();
 }
 
+std::string measure_json(const mesh::Model& model, std::span<const mesh::NodeIndex> nodes, const mesh::measure::NodeMeasures& measures) {
+  Json ids = Json::array();
+  for (const mesh::NodeIndex node : nodes) ids.push_back(model.node_ids[node.value]);
+  Json said{{"nodes", std::move(ids)},
+            {"between", point(measures.between)},
+            {"distance", measures.distance},
+            {"along_surface", measures.along_surface ? Json(*measures.along_surface) : Json(nullptr)}};
+  if (nodes.size() == 3) {
+    said["angle"] = measures.angle ? Json(*measures.angle) : Json(nullptr);
+    said["circle"] = measures.circle ? Json{{"radius", measures.circle->radius},
+                                            {"centre", point(measures.circle->centre)},
+                                            {"normal", point(measures.circle->normal)}}
+                                     : Json(nullptr);
+  }
+  return said.dump();
+}
+
+std::string cross_section_json(const mesh::Model& model, const mesh::measure::CrossSection& section) {
+  Json curves = Json::array();
+  for (const mesh::measure::SectionCurve& curve : section.curves) {
+    Json points = Json::array();
+    for (const mesh::Vec3& each : curve.points) points.push_back(point(each));
+    curves.push_back({{"part", curve.part.valid() ? Json((*model.parts)[curve.part.value].id) : Json(nullptr)},
+                      {"closed", curve.closed},
+                      {"length", curve.length},
+                      {"points", std::move(points)}});
+  }
+  return Json{{"shells", section.shells}, {"length", section.length}, {"curves", std::move(curves)}}.dump();
+}
+
 std::string flanges_json(const mesh::Model& model, const mesh::connections::Flanges& flanges) {
   Json list = Json::array();
   for (const mesh::connections::Flange& flange : flanges.all) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,8 @@
 #include "mesh/document/document.h"
 #include "mesh/document/edit_report.h"
 #include "mesh/document/journal.h"
+#include "mesh/measure/cross_section.h"
+#include "mesh/measure/lengths.h"
 
 namespace prismesh::cli {
 
@@ -27,6 +30,9 @@ std::string failed_edit_json(const std::string& edit, const std::string& reason)
 std::string replay_json(const std::vector<mesh::document::ReplayStep>& steps, const std::string& deck_hash, bool other_deck);
 std::string diff_json(const Difference& difference);
 std::string distance_json(const Gap& gap);
+/// `nodes`: those that were measured.
+std::string measure_json(const mesh::Model& model, std::span<const mesh::NodeIndex> nodes, const mesh::measure::NodeMeasures& measures);
+std::string cross_section_json(const mesh::Model& model, const mesh::measure::CrossSection& section);
 std::string flanges_json(const mesh::Model& model, const mesh::connections::Flanges& flanges);
 std::string penetrations_json(const mesh::document::Contacts& contacts);
 std::string bench_json(const BenchReport& report);

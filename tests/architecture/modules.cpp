@@ -29,6 +29,7 @@ const std::vector<Module>& modules() {
       {"mesh/spatial", {"mesh/model"}},
       {"mesh/field", {"mesh/spatial"}},
       {"mesh/lod", {"mesh/spatial"}},
+      {"mesh/measure", {"mesh/spatial"}},
       {"mesh/quality", {"mesh/model"}},
       {"mesh/connections", {"mesh/quality", "mesh/spatial"}},
       {"mesh/contact", {"mesh/connections"}},
@@ -103,7 +104,7 @@ const std::vector<Module>& modules() {
         "kiosk/tools/shaping", "kiosk/tools/pen", "kiosk/tools/quality", "kiosk/tools/mesh_operations", "kiosk/tools/parts",
         "kiosk/tools/history", "kiosk/tools/view", "kiosk/calibration", "kiosk/display/kms", "kiosk/display/x11", "drivers/settings"}},
 
-      {"cli", {"ipc/device", "ipc/import", "ipc/model", "ipc/pen", "ipc/remote", "drivers/settings"}},
+      {"cli", {"ipc/device", "ipc/import", "ipc/model", "ipc/pen", "ipc/remote", "mesh/measure", "drivers/settings"}},
   };
   return kModules;
 }

@@ -11,7 +11,8 @@ TEST_F(Cli, version_and_help) {
   EXPECT_EQ(prismesh({"--version"}).out, "prismesh " PRISMESH_VERSION "\n");
   const Outcome help = prismesh({"--help"});
   EXPECT_EQ(help.status, kDone);
-  for (const char* command : {"info", "check", "edit", "replay", "diff", "distance", "penetrations", "flanges", "sample", "bench"})
+  for (const char* command :
+       {"info", "check", "edit", "replay", "diff", "distance", "penetrations", "flanges", "measure", "cross-section", "sample", "bench"})
     EXPECT_THAT(help.out, HasSubstr(command));
   const Outcome edit_help = prismesh({"edit", "--help"});
   EXPECT_EQ(edit_help.status, kDone);
@@ -41,6 +42,13 @@ TEST_F(Cli, wrong_usage_is_status_2_and_a_sentence) {
       {{"sample"}, "--output is required"},
       {{"distance", "a.k", "--from", "1"}, "--to is required"},
       {{"diff", "a.k"}, "B is required"},
+      {{"measure", "a.k", "1"}, "NODES"},
+      {{"measure", "a.k", "1", "two"}, "NODES"},
+      {{"cross-section", "a.k"}, "--plane is required"},
+      {{"cross-section", "a.k", "--plane", "w=3"}, "must be like x=120"},
+      {{"cross-section", "a.k", "--plane", "x=nan"}, "must be like x=120"},
+      {{"cross-section", "a.k", "--plane", "1,2,3,4,5"}, "must be like x=120"},
+      {{"cross-section", "a.k", "--plane", "1,2,3,4,5,6,7"}, "must be like x=120"},
       {{"edit", "a.k", "-o", ""}, "output: names no file"},
       {{"replay", "a.journal", "a.k", "-o", ""}, "output: names no file"},
       {{"sample", "-o", ""}, "output: names no file"},
