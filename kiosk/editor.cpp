@@ -235,7 +235,7 @@ bool Editor::takes_numbers(const Pointer& pointer) const {
 
 void Editor::begin_number(const std::string& text, const Pointer& pointer) {
   for (TakesNumbers* tool : tools_.with<TakesNumbers>())
-    if (tool->begin_number(text, pointer)) return;
+    if (tool->takes_numbers(pointer) && tool->begin_number(text, pointer)) return;
 }
 
 // --- the picture ---

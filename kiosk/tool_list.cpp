@@ -3,9 +3,11 @@
 #include "kiosk/editor_keys.h"
 #include "kiosk/tools/comparison/comparison_tool.h"
 #include "kiosk/tools/contact/contact_tool.h"
+#include "kiosk/tools/cutting/cutting_tool.h"
 #include "kiosk/tools/files/files_tool.h"
 #include "kiosk/tools/find/find_tool.h"
 #include "kiosk/tools/history/history_tool.h"
+#include "kiosk/tools/measuring/measuring_tool.h"
 #include "kiosk/tools/mesh_operations/mesh_operations_tool.h"
 #include "kiosk/tools/parts/parts_tool.h"
 #include "kiosk/tools/pen/pen_tool.h"
@@ -40,6 +42,8 @@ const std::vector<ListedTool>& listed_tools() {
       {tools::quality::keys(), make<tools::quality::QualityTool>},
       {tools::contact::keys(), make<tools::contact::ContactTool>},
       {tools::mesh_operations::keys(), make<tools::mesh_operations::MeshOperationsTool>},
+      {tools::measuring::keys(), make<tools::measuring::MeasuringTool>},
+      {tools::cutting::keys(), make<tools::cutting::CuttingTool>},
       {tools::parts::keys(), make<tools::parts::PartsTool>},
       {{}, make<tools::history::HistoryTool>},
       {tools::view::keys(), make<tools::view::ViewTool>},

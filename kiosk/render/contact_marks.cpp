@@ -30,24 +30,8 @@ std::vector<Corners> corners_of(const ModelTable& table, std::span<const mesh::S
 Result<void> ContactMarks::set(const ModelTable& table, const mesh::Vec3& origin, ContactPicture picture) {
   picture_ = std::move(picture);
   if (Result<void> done = update(table); !done) return done;
-  std::vector<std::array<float, 4>> places;
-  const auto lines_of = [&](const std::vector<std::array<mesh::Vec3, 2>>& segments) {
-    std::vector<NodePair> lines;
-    for (const std::array<mesh::Vec3, 2>& segment : segments) {
-      const auto first = static_cast<std::uint32_t>(places.size());
-      for (const mesh::Vec3& end : segment) {
-        const Eigen::Vector3f at = (end - origin).cast<float>();
-        places.push_back({at.x(), at.y(), at.z(), at.allFinite() ? 1.0F : 0.0F});
-      }
-      lines.push_back({first, first + 1});
-    }
-    return lines;
-  };
-  const std::vector<NodePair> curve = lines_of(picture_.curve), vectors = lines_of(picture_.vectors);
-  if (const auto reserved = line_positions_.reserve(places.size(), "lines of contact"); !reserved) return fail(reserved.error());
-  line_positions_.upload(std::as_bytes(std::span(places)));
-  if (Result<void> done = curve_.upload(curve, "crossing curves"); !done) return done;
-  return vectors_.upload(vectors, "ways out of contact");
+  if (Result<void> done = curve_.set(picture_.curve, origin, "crossing curves"); !done) return done;
+  return vectors_.set(picture_.vectors, origin, "ways out of contact");
 }
 
 Result<void> ContactMarks::update(const ModelTable& table) {
@@ -57,7 +41,9 @@ Result<void> ContactMarks::update(const ModelTable& table) {
 
 void ContactMarks::clear() {
   picture_ = {};
-  chosen_.count = shells_.count = curve_.count = vectors_.count = 0;
+  chosen_.count = shells_.count = 0;
+  curve_.clear();
+  vectors_.clear();
 }
 
 Result<void> ContactMarks::set_touching(const ModelTable& table, const PreviewPatch& patch, std::span<const mesh::ShellIndex> others) {
@@ -66,7 +52,7 @@ Result<void> ContactMarks::set_touching(const ModelTable& table, const PreviewPa
 }
 
 std::size_t ContactMarks::bytes_uploaded() const {
-  std::size_t bytes = line_positions_.bytes_uploaded() + curve_.texture.bytes_uploaded() + vectors_.texture.bytes_uploaded();
+  std::size_t bytes = curve_.bytes_uploaded() + vectors_.bytes_uploaded();
   for (const Shells* shells : {&chosen_, &shells_, &moved_, &touched_}) bytes += shells->connectivity.bytes_uploaded();
   return bytes;
 }

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "kiosk/render/contact_picture.h"
-#include "kiosk/render/line_set.h"
+#include "kiosk/render/free_lines.h"
 #include "kiosk/render/model_table.h"
 #include "kiosk/render/preview_patch.h"
 
@@ -31,16 +31,14 @@ class ContactMarks {
   const Shells& shells() const { return shells_; }
   const Shells& moved() const { return moved_; }      ///< into the preview's positions
   const Shells& touched() const { return touched_; }  ///< by them, shells of the model
-  const RowTexture& line_positions() const { return line_positions_; }
-  const LineSet& curve() const { return curve_; }
-  const LineSet& vectors() const { return vectors_; }
+  const FreeLines& curve() const { return curve_; }
+  const FreeLines& vectors() const { return vectors_; }
   std::size_t bytes_uploaded() const;
 
  private:
   ContactPicture picture_;
   Shells chosen_, shells_, moved_, touched_;
-  RowTexture line_positions_{kPositionTexel};
-  LineSet curve_, vectors_;
+  FreeLines curve_, vectors_;
 };
 
 }  // namespace prismesh::kiosk::render

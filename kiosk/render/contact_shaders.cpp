@@ -22,6 +22,7 @@ void main() {
   if (a.w * b.w * c.w * d.w == 0.0) return;
   int corner = kCorner[gl_VertexID % 6];
   at = (corner == 0 ? a : corner == 1 ? b : corner == 2 ? c : d).xyz;
+  cut(at);
   gl_Position = nearer(clip_from_model * vec4(at, 1.0), toward_eye_mm);
   vec3 normal = cross(c.xyz - a.xyz, (nodes.z == nodes.w ? a.xyz : d.xyz) - b.xyz);
   float size = length(normal);

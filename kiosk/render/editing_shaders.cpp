@@ -26,6 +26,7 @@ void main() {
   place = kTip[gl_VertexID % kCorners];
   gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
   vec4 at = texelFetch(positions, texel(node), 0);
+  cut(at.xyz);
   if (at.w == 0.0) return;
   vec3 mm = (screen_from_model * vec4(at.xyz, 1.0)).xyz;
   float radius_mm = radius_pixels * mm_per_pixel * max(viewer_mm - mm.z, 1.0) / viewer_mm;

@@ -24,6 +24,7 @@ Frame::Frame(const EyeView& eye_view, const Picture& picture, const ModelLayer& 
   clip_from_model = (clip_from_deck * deck_from_model).cast<float>();
   screen_from_model = (screen_from_deck * deck_from_model).cast<float>();
   screen_from_normal = view.rotation.toRotationMatrix().cast<float>();
+  cut = cut_plane(model);
   eye_in_model = (stereo::to_deck(view, eye.eye_mm) - model.textures().origin()).cast<float>();
   const Eigen::Matrix2d clip = eye.image.from_picture.leftCols<2>() * Eigen::Vector2d(1, -1).asDiagonal();
   const Eigen::Matrix2d texels = 0.5 * Eigen::Vector2d(eye.image.width, eye.image.height).asDiagonal() * clip;
@@ -31,6 +32,14 @@ Frame::Frame(const EyeView& eye_view, const Picture& picture, const ModelLayer& 
   pixels_from_clip = clip.inverse().cast<float>();
   texels_from_pixels = texels.cast<float>();
   pixels_from_texels = texels.inverse().cast<float>();
+}
+
+Eigen::Vector4f cut_plane(const ModelLayer& model) {
+  if (!model.cut()) return {0, 0, 0, 1};
+  const CutPicture& cut = *model.cut();
+  Eigen::Vector4d plane;
+  plane << -cut.normal, (cut.point - model.textures().origin()).dot(cut.normal);
+  return plane.cast<float>();
 }
 
 float Frame::fitting_radius(const RadiusLimits& limits, double typical_side) const {
@@ -58,6 +67,7 @@ void Frame::set(const gl::Program& program) const {
   program.set("screen_from_model", screen_from_model);
   program.set("clip_from_screen", Eigen::Matrix4f(eye.clip_from_screen.cast<float>()));
   program.set("viewer_mm", static_cast<float>(eye.viewer_mm));
+  program.set("cut_plane", cut);
 }
 
 bool may_be_seen(const stereo::Box& box, const Eigen::Matrix4d& clip_from_deck) {

@@ -33,6 +33,7 @@ struct Frame {
   Eigen::Matrix4f screen_from_model;
   Eigen::Matrix3f screen_from_normal;
   Eigen::Vector3f eye_in_model;
+  Eigen::Vector4f cut;  ///< cut_plane
   // Maps between steps on the display (pixels, y up), in normalised coordinates and in texels of the image.
   Eigen::Matrix2f clip_from_pixels, pixels_from_clip, texels_from_pixels, pixels_from_texels;
 
@@ -44,6 +45,9 @@ struct Frame {
   /// Makes the program current and sets the uniforms of programs that read the model's textures.
   void set(const gl::Program& program) const;
 };
+
+/// The plane of the model's cut, relative to the model's origin: times (x, y, z, 1) it is below 0 where the model is cut away.
+Eigen::Vector4f cut_plane(const ModelLayer& model);
 
 /// Size in mm, at depth z_mm, of what covers a display pixel for a viewer at the distance viewer_mm from the screen.
 inline double mm_of_pixel_at(double mm_per_pixel, double viewer_mm, double z_mm) {

@@ -1,6 +1,7 @@
 #include "kiosk/render/gl.h"
 
 #include <cstdio>
+#include <string_view>
 #include <vector>
 
 namespace prismesh::kiosk::render::gl {
@@ -51,6 +52,16 @@ Result<Program> Program::link(const std::string& name, std::string_view vertex, 
     return fail("OpenGL", "the graphics driver can't link the shader program \"" + name + "\": " + log);
   }
   return program;
+}
+
+bool has_clip_distance() {
+  GLint count = 0;
+  glGetIntegerv(GL_NUM_EXTENSIONS, &count);
+  for (GLint i = 0; i < count; ++i) {
+    const auto* name = reinterpret_cast<const char*>(glGetStringi(GL_EXTENSIONS, static_cast<GLuint>(i)));
+    if (name != nullptr && std::string_view(name) == "GL_EXT_clip_cull_distance") return true;
+  }
+  return false;
 }
 
 Result<void> check_context() {

@@ -76,6 +76,7 @@ class Program {
   void set(const char* uniform, float value) const { glUniform1f(location(uniform), value); }
   void set(const char* uniform, float x, float y) const { glUniform2f(location(uniform), x, y); }
   void set(const char* uniform, float x, float y, float z, float w) const { glUniform4f(location(uniform), x, y, z, w); }
+  void set(const char* uniform, const Eigen::Vector4f& v) const { set(uniform, v.x(), v.y(), v.z(), v.w()); }
   void set(const char* uniform, const Eigen::Vector3f& v) const { glUniform3f(location(uniform), v.x(), v.y(), v.z()); }
   void set(const char* uniform, int x, int y) const { glUniform2i(location(uniform), x, y); }
   void set(const char* uniform, const Eigen::Matrix2f& m) const { glUniformMatrix2fv(location(uniform), 1, GL_FALSE, m.data()); }
@@ -86,6 +87,11 @@ class Program {
   GLint location(const char* uniform) const { return glGetUniformLocation(name_, uniform); }
   GLuint name_ = 0;
 };
+
+/// GL_CLIP_DISTANCE0_EXT.
+inline constexpr GLenum kClipDistance = 0x3000;
+/// Whether shaders can cut triangles off at a plane: GL_EXT_clip_cull_distance.
+bool has_clip_distance();
 
 /// Checks that the current context is OpenGL ES 3.1 or later. Errors: none, or an older one, with its version.
 Result<void> check_context();

@@ -26,6 +26,7 @@ void main() {
   int count = nodes.z == nodes.w ? 3 : 4, k = int(glyph.y >> 5) & 3;
   vec4 place[4] = vec4[4](texelFetch(positions, texel(nodes.x), 0), texelFetch(positions, texel(nodes.y), 0),
                           texelFetch(positions, texel(nodes.z), 0), texelFetch(positions, texel(nodes.w), 0));
+  cut(0.25 * (place[0].xyz + place[1].xyz + place[2].xyz + place[3].xyz));
   vec2 seen[4];
   float nearest = 1e30;
   for (int i = 0; i < 4; ++i) {

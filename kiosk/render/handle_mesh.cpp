@@ -20,6 +20,7 @@ constexpr double kAxisRadius = 1.4, kAxisBeyond = 28, kAxisEnd = 5;
 constexpr double kCircleRadius = 1.1, kArcRadius = 2.4, kTickRadius = 1.1, kSpokeRadius = 0.8;
 constexpr double kTick = 11, kLongTick = 18;
 constexpr double kFollowedRadius = 2.2;
+constexpr double kMeasureRadius = 1.2, kMeasureBall = 4;
 constexpr double kPenRadius = 4, kPenCollar = 6, kPenNodeRadius = 5, kMarkSize = 1.5;
 constexpr double kPenConeEnd = 0.17, kPenGripEnd = 0.5;  ///< share of the pen's length
 constexpr float kDiskAlpha = 0.42F, kActiveDiskAlpha = 0.6F, kFaintAlpha = 0.9F;
@@ -260,6 +261,36 @@ std::vector<HandlePiece> handle_pieces(const Handle& handle, const HandleSpace& 
   return pieces;
 }
 
+std::vector<HandlePiece> cut_pieces(const Handle& handle, const HandleSpace& space) {
+  if (!finite(handle.at) || !finite(handle.direction) || !(handle.direction.norm() > 0)) return {};
+  const ScreenSpace screen(space);
+  const bool active = handle.use == Handle::Use::arrow;
+  std::vector<HandlePiece> pieces;
+  const Vec3 normal = handle.direction.normalized(), u = any_across(normal), v = normal.cross(u);
+  if (const stereo::Box& box = screen.around(); !box.empty()) {
+    Eigen::Vector2d low(0, 0), high(0, 0);  // the arrow is in it
+    for (int corner = 0; corner < 8; ++corner) {
+      const Vec3 at((corner & 1 ? box.high : box.low).x(), (corner & 2 ? box.high : box.low).y(), (corner & 4 ? box.high : box.low).z());
+      const Eigen::Vector2d place((at - handle.at).dot(u), (at - handle.at).dot(v));
+      low = low.cwiseMin(place);
+      high = high.cwiseMax(place);
+    }
+    const auto corner = [&](double a, double b) { return screen.point(handle.at + a * u + b * v); };
+    const std::array<Vec3, 4> frame{corner(low.x(), low.y()), corner(high.x(), low.y()), corner(high.x(), high.y()),
+                                    corner(low.x(), high.y())};
+    pieces.push_back({{}, active, false, kFaintAlpha});
+    for (std::size_t i = 0; i < frame.size(); ++i)
+      if (frame[i] != frame[(i + 1) % frame.size()])
+        add_tube(pieces.back().triangles, screen, {frame[i], frame[(i + 1) % frame.size()]}, kCircleRadius);
+  }
+  const Vec3 foot = screen.point(handle.at);
+  const double length = stereo::kHandleLengthPixels * screen.pixel(foot) / space.view.mm_per_unit;
+  const Vec3 axis = screen.point(handle.at + normal * length) - foot;
+  pieces.push_back({{}, active, false, 1});
+  if (axis.norm() > 0) add_arrow(pieces.back().triangles, foot, axis, screen.pixel(foot));
+  return pieces;
+}
+
 std::vector<HandlePiece> pen_pieces(const Pen& pen, const HandleSpace& space) {
   if (!finite(pen.tip) || !finite(pen.shaft) || !(pen.shaft.norm() > 0)) return {};
   const ScreenSpace screen(space);
@@ -296,6 +327,21 @@ std::vector<HandlePiece> mark_pieces(const Vec3& point, const HandleSpace& space
   add_ball(pieces.back().triangles, at, kPenNodeRadius * pixel);
   add_ring(pieces.back().triangles, at, kMarkSize * pixel);
   return pieces;
+}
+
+HandlePiece measures_piece(const std::vector<std::vector<Vec3>>& ways, const HandleSpace& space) {
+  const ScreenSpace screen(space);
+  HandlePiece piece;
+  for (const std::vector<Vec3>& way : ways) {
+    std::vector<Vec3> points;
+    for (const Vec3& at : way)
+      if (finite(at)) points.push_back(screen.point(at));
+    for (const Vec3& at : points) add_ball(piece.triangles, at, kMeasureBall * screen.pixel(at));
+    // Each piece by itself: a tube round a corner would be bent.
+    for (std::size_t i = 0; i + 1 < points.size(); ++i)
+      if (points[i] != points[i + 1]) add_tube(piece.triangles, screen, {points[i], points[i + 1]}, kMeasureRadius);
+  }
+  return piece;
 }
 
 HandlePiece followed_edges_piece(const std::vector<std::array<Vec3, 2>>& edges, const HandleSpace& space) {

@@ -32,6 +32,9 @@ struct HandleSpace {
 /// The handle's pieces in drawing order. Empty if position or direction isn't finite, or the direction is zero.
 std::vector<HandlePiece> handle_pieces(const Handle& handle, const HandleSpace& space);
 
+/// The arrow that drags a cut, and the outline of the model's box in its plane. Empty as above.
+std::vector<HandlePiece> cut_pieces(const Handle& handle, const HandleSpace& space);
+
 /// The pen's pieces in drawing order: the touched shell, the node, the tip, the shaft. Empty if tip or shaft isn't finite, or the shaft is
 /// zero.
 std::vector<HandlePiece> pen_pieces(const Pen& pen, const HandleSpace& space);
@@ -39,6 +42,9 @@ inline constexpr double kPenLengthPixels = 170;  ///< if it is parallel to the s
 
 /// A ball at a point, and a ring about it in the screen's plane, of the active colour. Empty if the point isn't finite.
 std::vector<HandlePiece> mark_pieces(const Vec3& point, const HandleSpace& space);
+
+/// Thin tubes along ways, with a ball at each of their points. Points that aren't finite are left out.
+HandlePiece measures_piece(const std::vector<std::vector<Vec3>>& ways, const HandleSpace& space);
 
 /// Tubes along edges, of the active colour. Edges that aren't finite are left out.
 HandlePiece followed_edges_piece(const std::vector<std::array<Vec3, 2>>& edges, const HandleSpace& space);

@@ -24,13 +24,15 @@ bool has_corner(const mesh::ShellNodes& nodes, std::uint32_t node) {
 
 }  // namespace
 
-NodeFinder::NodeFinder(const ModelTable& table, const ItemImage& image, const stereo::Aim& aim)
+NodeFinder::NodeFinder(const ModelTable& table, const ItemImage& image, const stereo::Aim& aim, const std::optional<CutPicture>& cut)
     : table_(table),
       image_(image),
       aim_(aim),
       clip_(aim.clip_from_deck()),
       eye_(stereo::to_deck(aim.view, aim.eye_mm)),
-      pixel_in_deck_(aim.mm_per_pixel() / aim.view.mm_per_unit) {}
+      pixel_in_deck_(aim.mm_per_pixel() / aim.view.mm_per_unit) {
+  if (cut) cut_ = CutPicture{cut->point, cut->normal};
+}
 
 std::optional<Eigen::Vector2d> NodeFinder::pixel_of(std::uint32_t node) const {
   const Eigen::Vector4d clip = clip_ * table_.position(node).homogeneous();
@@ -55,6 +57,7 @@ bool NodeFinder::hides(std::uint32_t shell, const Vec3& point) const {
 
 bool NodeFinder::seen(std::uint32_t node, const Eigen::Vector2d& pixel) const {
   if (!(pixel.x() >= 0 && pixel.y() >= 0 && pixel.x() < image_.width && pixel.y() < image_.height)) return false;
+  if (cut_ && cut_->takes_away(table_.position(node))) return false;
   const int x = static_cast<int>(pixel.x()), y = static_cast<int>(pixel.y());
   const std::uint32_t here = image_.shell_at(x, y);
   if (here == kNoIndex || !hides(here, table_.position(node))) return true;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "kiosk/render/cut_picture.h"
 #include "kiosk/render/model_table.h"
 #include "kiosk/render/picture.h"
 #include "kiosk/stereo/pointer.h"
@@ -26,7 +27,8 @@ struct ItemImage {
 /// Finds nodes in a picture. The image must be of the same model and aim; `table` and `image` must outlive this.
 class NodeFinder {
  public:
-  NodeFinder(const ModelTable& table, const ItemImage& image, const stereo::Aim& aim);
+  /// Nodes that the cut takes away aren't visible.
+  NodeFinder(const ModelTable& table, const ItemImage& image, const stereo::Aim& aim, const std::optional<CutPicture>& cut = {});
 
   /// Whether a node that projects to `pixel` is visible: one of its shells is at the pixel or beside it, or the shell at the pixel isn't in
   /// front of the node.
@@ -47,8 +49,9 @@ class NodeFinder {
   const ItemImage& image_;
   stereo::Aim aim_;
   Eigen::Matrix4d clip_;
-  mesh::Vec3 eye_;            ///< deck coordinates
-  double pixel_in_deck_ = 1;  ///< size of a pixel at the screen's depth, deck's unit
+  std::optional<CutPicture> cut_;  ///< without its segments
+  mesh::Vec3 eye_;                 ///< deck coordinates
+  double pixel_in_deck_ = 1;       ///< size of a pixel at the screen's depth, deck's unit
 };
 
 }  // namespace prismesh::kiosk::render

@@ -172,6 +172,14 @@ Result<void> ModelLayer::set_contact(ContactPicture picture) {
   return {};
 }
 
+Result<void> ModelLayer::set_cut(std::optional<CutPicture> cut) {
+  ++shape_version_;  // what can be picked changes
+  cut_ = std::move(cut);
+  cut_curves_.clear();
+  if (!cut_ || !table_) return {};
+  return cut_curves_.set(cut_->segments, textures_.origin(), "curves of the cut");
+}
+
 Result<void> ModelLayer::choose_preview_glyphs(std::size_t cap) {
   std::vector<Glyph> live;
   if (previewing()) live = preview_->glyphs(glyphs_of_damage_);
@@ -252,7 +260,7 @@ Result<ModelLayer::ShadowCaster> ModelLayer::shadow_caster() {
 
 std::size_t ModelLayer::bytes_uploaded() const {
   std::size_t bytes = model_glyphs_.instances.bytes_uploaded + preview_glyphs_.instances.bytes_uploaded + marked_.bytes_uploaded +
-                      contact_.bytes_uploaded();
+                      contact_.bytes_uploaded() + cut_curves_.bytes_uploaded();
   for (const RowTexture* texture : {&textures_.positions(), &textures_.connectivity(), &textures_.surface(), &borders_.texture,
                                     &creases_.texture, &line_elements_.texture, &selected_.texture(), &preview_positions_,
                                     &preview_casting_.connectivity, &selection_casting_.connectivity, &preview_edges_.texture})

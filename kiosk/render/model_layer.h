@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "kiosk/render/contact_marks.h"
+#include "kiosk/render/cut_picture.h"
+#include "kiosk/render/free_lines.h"
 #include "kiosk/render/glyphs.h"
 #include "kiosk/render/line_set.h"
 #include "kiosk/render/model_textures.h"
@@ -58,6 +60,11 @@ class ModelLayer {
   /// graphics memory.
   Result<void> set_contact(ContactPicture picture);
   const ContactMarks& contact() const { return contact_; }
+  /// Cuts the model, until the next call or until there is no model. Nothing: it is whole. Errors: too large for the GPU, no graphics
+  /// memory.
+  Result<void> set_cut(std::optional<CutPicture> cut);
+  const std::optional<CutPicture>& cut() const { return cut_; }
+  const FreeLines& cut_curves() const { return cut_curves_; }
   bool previewing() const { return preview_ && preview_->any_frame(); }
   const RowTexture& preview_positions() const { return preview_positions_; }
   const LineSet& preview_edges() const { return preview_edges_; }
@@ -136,6 +143,8 @@ class ModelLayer {
   std::size_t glyph_cap_ = 0;
   bool glyphs_of_damage_ = false;
   ContactMarks contact_;
+  std::optional<CutPicture> cut_;
+  FreeLines cut_curves_;
   PartLooks part_looks_;
   bool part_looks_stale_ = true, part_looks_of_damage_ = false;
   Instances marked_;

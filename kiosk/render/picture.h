@@ -121,8 +121,10 @@ struct Picture {
   bool selected_nodes = true;
   bool moving = false;  ///< the view turns or something is dragged: drawn without multisampling, which is faster for large models
   std::optional<Handle> handle;
+  std::optional<Handle> cut_handle;  ///< the plane that cuts the model: its arrow, and the outline of the plane
   std::optional<Pen> pen;
   std::vector<std::array<Vec3, 2>> followed_edges;  ///< free edges that move as far as the handle, deck coordinates: drawn green
+  std::vector<std::vector<Vec3>> measures;          ///< ways from node to node, deck coordinates
   std::optional<PixelRect> rubber_band;
   std::vector<Eigen::Vector2d> lasso;  ///< display pixels; drawn closed
   bool shadows = false;                ///< of the dragged or selected shells, on planes beside the model

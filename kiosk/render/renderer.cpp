@@ -35,8 +35,8 @@ struct DrawnScene {
     const auto facts = [](const DrawnScene& d) {
       const Picture& p = d.picture;
       return std::tie(p.view, p.profile.optics.pixel_pitch_mm, p.colour, p.element_edges, p.outlines, p.quality_glyphs, p.damaged_only,
-                      p.marked, p.marked_point, p.selected_nodes, p.handle, p.pen, p.followed_edges, p.shadows, p.field, p.two_views,
-                      d.images, d.width, d.height, d.scene_version);
+                      p.marked, p.marked_point, p.selected_nodes, p.handle, p.cut_handle, p.pen, p.followed_edges, p.measures, p.shadows,
+                      p.field, p.two_views, d.images, d.width, d.height, d.scene_version);
     };
     return facts(*this) == facts(other);
   }
@@ -190,6 +190,18 @@ Result<void> Renderer::set_contact(ContactPicture picture) {
   return impl_->layer.set_contact(std::move(picture));
 }
 
+Result<void> Renderer::set_cut(std::optional<CutPicture> cut) {
+  ++impl_->scene_version;
+  std::optional<CutPicture> beside = cut;
+  if (beside) beside->segments.clear();  // they are those of this model
+  if (Result<void> done = impl_->other_layer.set_cut(std::move(beside)); !done) return done;
+  return impl_->layer.set_cut(std::move(cut));
+}
+
+const std::optional<CutPicture>& Renderer::cut() const { return impl_->layer.cut(); }
+
+bool Renderer::can_cut() { return gl::has_clip_distance(); }
+
 Result<void> Renderer::update_preview(const ipc::PreviewFrame& frame) {
   ++impl_->scene_version;
   return impl_->layer.update_preview(frame);
@@ -274,6 +286,7 @@ void Renderer::Impl::draw_views(const Picture& picture, const EyeView& eye, int 
     half.view = stereo::pan(picture.view, {picture.two_views->shift_mm(right, eye.mm_per_pixel * width), 0});
     if (pane == Pane::other) {
       half.handle.reset();
+      half.cut_handle.reset();
       half.pen.reset();
       half.followed_edges.clear();
       half.marked.reset();
@@ -352,14 +365,14 @@ std::optional<mesh::ShellIndex> Renderer::shell_at(const stereo::Aim& aim, const
 
 std::optional<mesh::NodeIndex> Renderer::node_near(const stereo::Aim& aim, const Eigen::Vector2d& pixel, double radius) {
   if (impl_->layer.empty()) return std::nullopt;
-  return NodeFinder(impl_->layer.table(), impl_->items_for(aim), aim).nearest(pixel, radius, impl_->layer.line_nodes());
+  return NodeFinder(impl_->layer.table(), impl_->items_for(aim), aim, impl_->layer.cut()).nearest(pixel, radius, impl_->layer.line_nodes());
 }
 
 mesh::NodeSet Renderer::nodes_in(const stereo::Aim& aim, const PixelRect& rect, bool through) {
   if (impl_->layer.empty()) return {};
   const ItemImage none;
   const ItemImage& image = through ? none : impl_->items_for(aim);
-  return NodeFinder(impl_->layer.table(), image, aim).inside(rect, through, impl_->layer.visible_nodes());
+  return NodeFinder(impl_->layer.table(), image, aim, impl_->layer.cut()).inside(rect, through, impl_->layer.visible_nodes());
 }
 
 Renderer::Figures Renderer::figures() const {

@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "ipc/model/preview.h"
 #include "kiosk/render/contact_picture.h"
+#include "kiosk/render/cut_picture.h"
 #include "kiosk/render/mesh_change.h"
 #include "kiosk/render/model_source.h"
 #include "kiosk/render/part_paint.h"
@@ -68,6 +69,13 @@ class Renderer {
 
   /// Marks where shells of the model touch; an empty picture: nowhere. Errors: too large for the GPU, no graphics memory.
   Result<void> set_contact(ContactPicture picture);
+
+  /// Cuts the model by a plane, in both views; nothing: it is whole. What is cut away isn't picked either. Errors: too large for the GPU,
+  /// no graphics memory.
+  Result<void> set_cut(std::optional<CutPicture> cut);
+  const std::optional<CutPicture>& cut() const;
+  /// False: the driver can't cut the picture, and only the curves are drawn.
+  static bool can_cut();
 
   /// Starts a drag's preview over the model: nodes that move and shells they touch, as in PreviewReader. Nothing is drawn until the first
   /// frame.

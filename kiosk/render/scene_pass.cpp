@@ -1,6 +1,7 @@
 #include "kiosk/render/scene_pass.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "kiosk/render/handle_mesh.h"
 #include "kiosk/render/palette.h"
@@ -18,11 +19,29 @@ constexpr float kPreviewHalfWidth = 0.65F;
 constexpr float kCrossingHalfWidth = 2.0F;
 constexpr float kWayOutHalfWidth = 0.9F;
 constexpr float kHemWidth = 1.1F;
+constexpr float kCutHalfWidth = 1.3F;
 /// A shell with a smaller radius on the screen is enlarged to this one for its glyph.
 constexpr RadiusLimits kGlyphRadius{9.0F, 5.0F, 0.7F};
 constexpr float kTransparentOpacity = 0.3F;
 constexpr double kNearestMm = 50;        ///< what is nearer to the eye counts as at this distance, for its level of detail
 constexpr double kLinesTowardEye = 1.3;  ///< pixels: depth offset of lines from the surface they lie on
+
+/// Cuts off what lies above the model's cut, where the driver can, until it goes out of scope.
+class CutOff {
+ public:
+  explicit CutOff(const ModelLayer& model) : on_(model.cut().has_value() && gl::has_clip_distance()) {
+    if (on_) glEnable(gl::kClipDistance);
+  }
+  ~CutOff() { end(); }
+  CutOff(const CutOff&) = delete;
+  CutOff& operator=(const CutOff&) = delete;
+  void end() {
+    if (std::exchange(on_, false)) glDisable(gl::kClipDistance);
+  }
+
+ private:
+  bool on_;
+};
 
 }  // namespace
 
@@ -77,11 +96,11 @@ void ScenePass::draw(const Picture& picture, const ViewContent& content, const E
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LEQUAL);
   if (!model.empty()) {
+    CutOff cut(model);
     model.textures().positions().bind(unit::kPositions);
     model.textures().connectivity().bind(unit::kConnectivity);
     model.textures().surface().bind(unit::kSurface);
     draw_shells(picture, content, caps.moving_triangles, frame);
-    if (picture.shadows) shadows_.draw(model, frame);
     contact_.draw(model, frame);
     model.textures().positions().bind(unit::kPositions);
     draw_model_lines(picture, model, frame);
@@ -91,11 +110,16 @@ void ScenePass::draw(const Picture& picture, const ViewContent& content, const E
     model.textures().connectivity().bind(unit::kConnectivity);
     if (picture.selected_nodes) nodes_.draw(model, frame);
     if (picture.quality_glyphs || picture.marked) draw_glyphs(picture, model, caps.glyphs, frame);
+    cut.end();
+    if (picture.shadows) shadows_.draw(model, frame);
+    draw_cut(model, frame);
   }
   const HandleSpace space{picture.view, eye.mm_per_pixel, eye.viewer_mm, model.shown_box()};
   if (!picture.followed_edges.empty()) handle_.draw({followed_edges_piece(picture.followed_edges, space)}, eye);
+  if (!picture.measures.empty()) handle_.draw({measures_piece(picture.measures, space)}, eye);
   if (picture.marked_point) handle_.draw(mark_pieces(*picture.marked_point, space), eye);
   if (picture.handle) handle_.draw(handle_pieces(*picture.handle, space), eye);
+  if (picture.cut_handle) handle_.draw(cut_pieces(*picture.cut_handle, space), eye);
   if (picture.pen) handle_.draw(pen_pieces(*picture.pen, space), eye);
   glDisable(GL_DEPTH_TEST);
   glDisable(GL_BLEND);
@@ -192,6 +216,8 @@ void ScenePass::draw_items(const ModelLayer& model, const PaintTexture& paint, c
   shaders_.items.set("connectivity", static_cast<int>(unit::kConnectivity));
   shaders_.items.set("surface", static_cast<int>(unit::kSurface));
   paint.use(shaders_.items, false);
+  shaders_.items.set("cut_plane", cut_plane(model));
+  const CutOff cut(model);
   model.shell_draws().draw_all(clip_from_model);
   glDisable(GL_DEPTH_TEST);
 }
@@ -224,20 +250,33 @@ void ScenePass::draw_model_lines(const Picture& picture, const ModelLayer& model
 /// A light line in a dark hem shows on the stripes and on any part; what hides it makes it fainter.
 void ScenePass::draw_contact_lines(const ModelLayer& model, const Frame& frame) const {
   const ContactMarks& marks = model.contact();
-  if (marks.curve().count + marks.vectors().count == 0) return;
+  if (marks.curve().lines().count + marks.vectors().lines().count == 0) return;
   blend_by_alpha();
   glDepthMask(GL_FALSE);
-  const auto draw_hemmed = [&](const LineSet& lines, float half_width, const Colour& colour, float alpha) {
-    draw_lines(lines, marks.line_positions(), {half_width + kHemWidth, ink(kBorderColour, alpha)}, frame);
-    draw_lines(lines, marks.line_positions(), {half_width, ink(colour, alpha)}, frame);
-  };
   for (const bool hidden : {true, false}) {
     glDepthFunc(hidden ? GL_GREATER : GL_LEQUAL);
     const float alpha = hidden ? 0.45F : 1.0F;
-    draw_hemmed(marks.vectors(), kWayOutHalfWidth, kInformationColour, alpha);
-    draw_hemmed(marks.curve(), kCrossingHalfWidth, kFailColour, alpha);
+    draw_hemmed(marks.vectors(), {kWayOutHalfWidth, ink(kInformationColour, alpha)}, frame);
+    draw_hemmed(marks.curve(), {kCrossingHalfWidth, ink(kFailColour, alpha)}, frame);
   }
   glDepthFunc(GL_LEQUAL);
+  glDepthMask(GL_TRUE);
+}
+
+/// A line in a dark hem shows on any part.
+void ScenePass::draw_hemmed(const FreeLines& lines, const LineStyle& style, const Frame& frame) const {
+  draw_lines(lines.lines(), lines.positions(), {style.half_width + kHemWidth, ink(kBorderColour, style.ink.w())}, frame);
+  draw_lines(lines.lines(), lines.positions(), style, frame);
+}
+
+void ScenePass::draw_cut(const ModelLayer& model, const Frame& frame) const {
+  if (!model.cut() || model.cut_curves().lines().count == 0) return;
+  blend_by_alpha();
+  glDepthMask(GL_FALSE);
+  glDepthFunc(GL_GREATER);
+  draw_hemmed(model.cut_curves(), {kCutHalfWidth, ink(kInformationColour, 0.45F)}, frame);
+  glDepthFunc(GL_LEQUAL);
+  draw_hemmed(model.cut_curves(), {kCutHalfWidth, ink(kInformationColour, 1.0F)}, frame);
   glDepthMask(GL_TRUE);
 }
 

@@ -55,6 +55,8 @@ class ScenePass {
   void draw_lines(const LineSet& lines, const RowTexture& positions, const LineStyle& style, const Frame& frame) const;
   void draw_model_lines(const Picture& picture, const ModelLayer& model, const Frame& frame) const;
   void draw_contact_lines(const ModelLayer& model, const Frame& frame) const;
+  void draw_hemmed(const FreeLines& lines, const LineStyle& style, const Frame& frame) const;
+  void draw_cut(const ModelLayer& model, const Frame& frame) const;
   void draw_preview(const ModelLayer& model, const Frame& frame) const;
   void draw_glyphs(const Picture& picture, ModelLayer& model, std::size_t cap, const Frame& frame) const;
 

@@ -10,6 +10,7 @@ namespace prismesh::kiosk::render {
 
 const std::string& shader_head() {
   static const std::string kHead = R"(#version 310 es
+#extension GL_EXT_clip_cull_distance : enable
 precision highp float;
 precision highp int;
 precision highp sampler2D;
@@ -37,12 +38,19 @@ void main() {
 }
 )";
 
-// texel() gives the place of entry i in the model's textures. nearer() moves a vertex toward the eye by `mm` in depth only; its place in
+// texel() gives the place of entry i in the model's textures. cut() keeps a vertex's distance from the plane above which the model is cut
+// away. nearer() moves a vertex toward the eye by `mm` in depth only; its place in
 // the picture stays.
 const char* const kPull = R"(
 uniform sampler2D positions;
 uniform mat4 clip_from_model;
 uniform vec2 depth_terms;
+uniform vec4 cut_plane;
+#ifdef GL_EXT_clip_cull_distance
+void cut(vec3 at) { gl_ClipDistance[0] = dot(cut_plane, vec4(at, 1.0)); }
+#else
+void cut(vec3 at) {}
+#endif
 ivec2 texel(uint i) { return ivec2(int(i & 4095u), int(i >> 12)); }
 vec4 nearer(vec4 clip, float mm) {
   float w = max(clip.w - mm, 0.001);
@@ -125,6 +133,7 @@ void main() {
   uvec4 nodes = texelFetch(connectivity, texel(shell), 0);
 #endif
   vec3 at = texelFetch(positions, texel(node_of(nodes, corner)), 0).xyz;
+  cut(at);
   gl_Position = clip_from_model * vec4(at, 1.0);
   triangle = nodes.z == nodes.w ? 1.0 : 0.0;
 #ifdef COARSE
@@ -219,7 +228,9 @@ void main() {
   uint word = texelFetch(surface, texel(shell), 0).x;
   if ((word & 256u) != 0u || !is_drawn(paint_of(word >> 9))) return;
   uvec4 nodes = texelFetch(connectivity, texel(shell), 0);
-  gl_Position = clip_from_model * vec4(texelFetch(positions, texel(node_of(nodes, gl_VertexID & 3)), 0).xyz, 1.0);
+  vec3 at = texelFetch(positions, texel(node_of(nodes, gl_VertexID & 3)), 0).xyz;
+  cut(at);
+  gl_Position = clip_from_model * vec4(at, 1.0);
 }
 )";
 
@@ -249,6 +260,7 @@ void main() {
   across_pixels = 0.0;
   footprint = 1.0;
   presence = 0.0;
+  cut((second ? pb : pa).xyz);
   if (pa.w == 0.0 || pb.w == 0.0 || a.w <= 0.0 || b.w <= 0.0) return;
   vec2 along = 2.0 * (pixels_from_clip * (b.xy / b.w - a.xy / a.w));
   float length_pixels = length(along);

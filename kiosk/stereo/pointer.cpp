@@ -38,6 +38,27 @@ Aim aim_for(const View& view, const Profile& profile, const PictureEyes& eyes, i
   return aim;
 }
 
+Eigen::Matrix4d clip_with_cut(const Aim& aim, const Vec3& point, const Vec3& normal) {
+  const Eigen::Matrix4d clip = aim.clip_from_deck();
+  Eigen::RowVector4d below;  // above 0 where the model is kept
+  below << -normal.transpose(), normal.dot(point);
+  const Vec3 eye = to_deck(aim.view, aim.eye_mm);
+  const double at_eye = below * eye.homogeneous();
+  const bool near = at_eye < 0;
+  // The least scale that keeps what is seen between the planes: the other plane goes through the corner that is farthest below.
+  const Eigen::Matrix4d deck = clip.inverse();
+  double farthest = 0;
+  for (int corner = 0; corner < 4; ++corner) {
+    const Eigen::Vector4d at = deck * Eigen::Vector4d(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, near ? 1 : -1, 1);
+    const double w = clip.row(3) * at;
+    farthest = std::max(farthest, double(below * at) / w);
+  }
+  if (at_eye == 0 || !(farthest > 0) || !std::isfinite(farthest)) return clip;
+  Eigen::Matrix4d cut = clip;
+  cut.row(2) = near ? Eigen::RowVector4d(2 / farthest * below - clip.row(3)) : Eigen::RowVector4d(clip.row(3) - 2 / farthest * below);
+  return cut;
+}
+
 std::optional<Eigen::Vector2d> pixel_of(const Aim& aim, const Vec3& deck_point) {
   const Vec3 pixel = pixel_homogeneous(aim, aim.clip_from_deck(), deck_point.homogeneous());
   if (!(pixel.z() > 0)) return std::nullopt;

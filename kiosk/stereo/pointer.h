@@ -28,6 +28,10 @@ struct Aim {
 /// relative to the screen's centre.
 Aim aim_for(const View& view, const Profile& profile, const PictureEyes& eyes, int width, int height);
 
+/// The matrix of a view in which a plane takes the place of the near plane, or of the far one if the eye is below it: what lies above the
+/// plane, along `normal`, is clipped. Depth keeps its order [Lengyel 2005]. The same matrix if the plane goes through the eye or clips all.
+Eigen::Matrix4d clip_with_cut(const Aim& aim, const Vec3& point, const Vec3& normal);
+
 /// Pixel of a deck point; empty if it is behind the eye.
 std::optional<Eigen::Vector2d> pixel_of(const Aim& aim, const Vec3& deck_point);
 /// Position of a pixel on the screen, mm.

@@ -156,7 +156,7 @@ class TracesPicture : public Ability {
 // --- panels; drawn inside Gui::layout ---
 
 /// Where a tool stands in the rail, from above.
-enum class RailPlace : std::uint8_t { select, pull, turn, mesh, quality, contact, compare, pen };
+enum class RailPlace : std::uint8_t { select, pull, turn, mesh, quality, contact, measure, cut, compare, pen };
 
 /// A button of the rail.
 struct RailEntry {

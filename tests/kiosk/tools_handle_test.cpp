@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "kiosk/toolkit/arrow.h"
 #include "kiosk/tools/shaping/shaping_options.h"
 
 namespace prismesh::kiosk::tools::shaping {
@@ -133,7 +134,7 @@ TEST(HandleTest, ring_arrow_and_disk_are_told_apart) {
 TEST(HandleTest, an_arrow_toward_the_viewer_is_what_lies_under_its_foot) {
   const stereo::Aim aim = aim_from("top");
   const Vec3 at(40, 40, 0);
-  EXPECT_TRUE(points_at_viewer(aim, at, Vec3::UnitZ()));
+  EXPECT_TRUE(toolkit::points_at_viewer(aim, at, Vec3::UnitZ()));
   EXPECT_EQ(part_of_handle(aim, handle_at(at, Vec3::UnitZ()), *stereo::pixel_of(aim, at)), Under::lift_handle);
 }
 

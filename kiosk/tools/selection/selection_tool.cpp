@@ -127,7 +127,9 @@ void SelectionTool::take(const OutlineDone& outline) {
   context_.selection.last_region.reset();
   mesh::document::SelectLasso edit;
   edit.outline = outline_of(way, size);
-  const Eigen::Matrix4d clip = toolkit::aim(context_.view).clip_from_deck();
+  const stereo::Aim aim = toolkit::aim(context_.view);
+  const std::optional<render::CutPicture>& cut = context_.renderer.cut();
+  const Eigen::Matrix4d clip = cut ? stereo::clip_with_cut(aim, cut->point, cut->normal) : aim.clip_from_deck();
   std::copy_n(clip.data(), 16, edit.view.begin());  // both are column-major
   edit.visible = !through_;
   edit.mode = outline.mode;

@@ -8,6 +8,7 @@
 
 #include <Eigen/Geometry>
 
+#include "kiosk/toolkit/arrow.h"
 #include "kiosk/toolkit/selected_nodes.h"
 
 namespace prismesh::kiosk::tools::shaping {
@@ -73,12 +74,9 @@ std::optional<Anchor> anchor_of_selection(const ModelSource& model, std::optiona
                 normal_at(model, *node)};
 }
 
-bool points_at_viewer(const stereo::Aim& aim, const Vec3& at, const Vec3& direction) {
-  const std::optional<Pixel> foot = stereo::pixel_of(aim, at), tip = stereo::pixel_of(aim, stereo::handle_tip(aim, at, direction));
-  return !foot || !tip || (*tip - *foot).norm() < 2 * kRingRadiusPixels;
-}
-
 namespace {
+
+using toolkit::points_at_viewer;
 
 constexpr double kSlackPixels = 8;
 constexpr int kCircleSteps = 180;

@@ -26,9 +26,6 @@ struct Anchor {
 /// Nothing if no node is selected. Costs a pass over the marks, and over the shells' nodes for the normal.
 std::optional<Anchor> anchor_of_selection(const render::ModelSource& model, std::optional<mesh::NodeIndex> preferred);
 
-/// Whether the arrow is so foreshortened that it can't be followed along its length: then it is pulled by moving upward.
-bool points_at_viewer(const stereo::Aim& aim, const Vec3& at, const Vec3& direction);
-
 /// Which part of a handle a pixel is on: the ring about its foot, its arrow, the disk, or (picture) none of them. An arrow that points at
 /// the viewer stands in the ring and goes first. A handle with an axis has the ball and its circle only.
 input::Under part_of_handle(const stereo::Aim& aim, const render::Handle& handle, const input::Pixel& pixel);

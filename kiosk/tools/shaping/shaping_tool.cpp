@@ -71,6 +71,7 @@ bool ShapingTool::gesture(const Gesture& gesture) {
 
 bool ShapingTool::take_handle_gesture(const Gesture& gesture) {
   if (const auto* taken = std::get_if<input::HandleTaken>(&gesture)) {
+    if (taken->handle == Under::cut_handle) return false;
     begin_pull(taken->handle, taken->at);
     return true;
   }
