@@ -120,9 +120,13 @@ Result<WeldKind> make_part(const Document& document, const Weld& edit, const std
   deck::CardWriter::WeldPart wanted;
   wanted.diameter = *edit.diameter;
   for (const PartIndex part : parts) wanted.sheets.push_back((*model.parts)[part.value].id);
-  wanted.density = least_of(model, parts, &Part::density);
-  wanted.youngs_modulus = least_of(model, parts, &Part::youngs_modulus);
-  wanted.poissons_ratio = least_of(model, parts, &Part::poissons_ratio);
+  const auto chosen = [&](const std::optional<double>& given, std::optional<double> Part::*value) {
+    return given ? given : least_of(model, parts, value);
+  };
+  wanted.density = chosen(edit.density, &Part::density);
+  wanted.youngs_modulus = chosen(edit.youngs_modulus, &Part::youngs_modulus);
+  wanted.poissons_ratio = chosen(edit.poissons_ratio, &Part::poissons_ratio);
+  wanted.yield_stress = edit.yield_stress;
   Result<std::pair<Part, std::string>> made = deck::card_writer(document.deck->format)->weld_part(*document.deck, model, wanted);
   if (!made) return fail("", "weld: " + made.error().text());
   WeldKind kind;
@@ -335,6 +339,8 @@ Result<void> check_form(const Document& document, const Weld& edit) {
     return fail("", "weld: this version makes no welds as \"" + as + "\": it makes beams in LS-DYNA decks");
   if (edit.like && edit.diameter)
     return fail("", "weld: \"diameter\" belongs to the section, which \"like\" takes from the existing weld; only one can be given");
+  if (edit.like && (edit.density || edit.youngs_modulus || edit.poissons_ratio || edit.yield_stress))
+    return fail("", "weld: \"like\" takes the material from the existing weld; its values can't be given too");
   if (!document.deck->references || document.deck->files.empty()) return fail("", "weld: the document has no deck");
   return {};
 }

@@ -233,7 +233,9 @@ struct Weld {
   double gap = 0;                                            ///< sheets may be farther apart than by their thickness by this
   std::optional<std::string> like;                           ///< "beam:9": an element whose part and card the new ones get
   std::optional<double> diameter;                            ///< without `like`: of a new section
-  std::optional<std::string> as;                             ///< what a weld is: "beam"; absent: as `like`
+  // without `like`, of the new material, in the deck's units; absent: the least of the sheets'
+  std::optional<double> density, youngs_modulus, poissons_ratio, yield_stress;
+  std::optional<std::string> as;  ///< what a weld is: "beam"; absent: as `like`
 };
 
 struct Undo {};

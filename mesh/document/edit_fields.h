@@ -180,7 +180,10 @@ PRISMESH_JSON_OBJECT(mesh::document::Separate, f("on", m.on), f("against", m.aga
 PRISMESH_JSON_OBJECT(mesh::document::Weld, f("flange", m.flange), f("along", m.along, kLinePoints), f("points", m.points, kWeldPoints),
                      f("points_file", m.points_file), f("pitch", m.pitch, kPositive), f("end_distance", m.end_distance, kNotNegative),
                      f("edge_distance", m.edge_distance, kNotNegative), f("sheets", m.sheets, kSheetsOfWeld), f("parts", m.parts),
-                     f("gap", m.gap, kNotNegative), f("like", m.like), f("diameter", m.diameter, kPositive), f("as", m.as));
+                     f("gap", m.gap, kNotNegative), f("like", m.like), f("diameter", m.diameter, kPositive),
+                     f("density", m.density, kPositive), f("youngs_modulus", m.youngs_modulus, kPositive),
+                     f("poissons_ratio", m.poissons_ratio, NumberLimits{0, 0.5}), f("yield_stress", m.yield_stress, kPositive),
+                     f("as", m.as));
 PRISMESH_JSON_OBJECT(mesh::document::Undo, );
 PRISMESH_JSON_OBJECT(mesh::document::Redo, );
 PRISMESH_JSON_OBJECT(mesh::document::TakeBranch, f.required("number", m.number));

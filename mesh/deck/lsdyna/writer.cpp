@@ -9,6 +9,7 @@
 #include "mesh/deck/lsdyna/parameters.h"
 #include "mesh/deck/lsdyna/set_writer.h"
 #include "mesh/deck/lsdyna/shell_writer.h"
+#include "mesh/deck/lsdyna/weld_cards.h"
 #include "mesh/deck/text/format_number.h"
 #include "mesh/deck/text/number.h"
 
@@ -117,6 +118,10 @@ class Writer : public CardWriter {
   Result<std::string> element_header(ElementClass) const override { return "*ELEMENT_BEAM"; }
   Result<WrittenCard> new_element(std::string_view text, ElementClass element_class, const ElementCard& element) const override {
     return lsdyna::new_element(text, element_class, element);
+  }
+
+  Result<std::pair<Part, std::string>> weld_part(const Deck& deck, const Model& model, const WeldPart& wanted) const override {
+    return lsdyna::weld_part(deck, model, wanted);
   }
 
   std::int64_t largest_node_id(std::uint16_t style) const override {

@@ -125,6 +125,7 @@ class CardWriter {
     std::optional<double> density;     ///< of the sheets; deck's units, here and below
     std::optional<double> youngs_modulus;
     std::optional<double> poissons_ratio;
+    std::optional<double> yield_stress;  ///< absent: the least of the sheets' materials
   };
   /// The part with its name, section and material, and its cards (AddedPart::cards). Ids are above all taken in their class. Errors: a
   /// value isn't known, or the format has no such welds; a whole sentence.

@@ -314,5 +314,104 @@ TEST_F(WeldEdit, keeps_the_layout_of_its_example) {
                           "               90002                  90               80003               80004"));
 }
 
+// --- without an example ---
+
+const std::string kNewPart = R"({"edit": "weld", "flange": {"at": [60, 10, 0]}, "pitch": 20, "diameter": 6, "yield_stress": 300})";
+
+TEST_F(WeldEdit, makes_part_section_material_set_and_contact_where_there_is_no_example) {
+  Document document = deck(2, "");
+  const std::string before = content_of(folder / "flange.k");
+  const EditReport report = weld(document, kNewPart);
+  EXPECT_EQ(report.welded->welds_added, 6u);
+  const std::vector<std::string> added = added_lines(before, saved(document));
+  const auto is_from = [&](const std::string& keyword, std::vector<std::string> lines) {
+    const auto at = std::find(added.begin(), added.end(), keyword);
+    ASSERT_NE(at, added.end()) << keyword;
+    ASSERT_GE(added.end() - at, static_cast<std::ptrdiff_t>(lines.size() + 1)) << keyword;
+    EXPECT_EQ(std::vector<std::string>(at + 1, at + 1 + static_cast<std::ptrdiff_t>(lines.size())), lines) << keyword;
+  };
+  is_from("*PART", {"spot welds", "         4         4         4"});
+  is_from("*SECTION_BEAM", {"         4         9       1.0       2.0       1.0", "       6.0       6.0       0.0       0.0"});
+  is_from("*MAT_SPOTWELD", {"         4   7.85E-9  210000.0       0.3     300.0       0.0", ""});
+  is_from("*SET_PART_LIST", {"         4", "         1         2"});
+  is_from("*CONTACT_SPOTWELD", {"         4         4         3         2", "", ""});
+  // twelve nodes behind those of the sheets, six beams behind all other elements
+  EXPECT_EQ(
+      std::count_if(added.begin(), added.end(), [](const std::string& line) { return line.size() == 40 && line.ends_with("       0"); }),
+      6);
+  const Document again = open(folder / "saved.k", {}).value();
+  EXPECT_EQ(beams(again).size(), 6u);
+  EXPECT_EQ((*again.current().model.parts)[beams(again).part[0].value].id, 4);
+  EXPECT_EQ(again.current().relations->dependents.on_sheets.size(), 12u);
+}
+
+TEST_F(WeldEdit, takes_the_yield_stress_from_the_sheets_materials) {
+  std::string text = flange_deck(2, "");
+  const std::string elastic = "*MAT_ELASTIC\n         1  7.85E-09    210000       0.3\n";
+  text.replace(text.find(elastic), elastic.size(),
+               "*MAT_PIECEWISE_LINEAR_PLASTICITY\n         1  7.85E-09    210000       0.3     340.5\n\n\n\n");
+  Document document = open_deck(folder / "flange.k", text);
+  weld(document, R"({"edit": "weld", "points": [[60, 10, 0]], "diameter": 5})");
+  EXPECT_THAT(saved(document), HasSubstr("*MAT_SPOTWELD\n         4   7.85E-9  210000.0       0.3     340.5       0.0\n"));
+}
+
+TEST_F(WeldEdit, asks_for_what_the_sheets_materials_do_not_say) {
+  Document document = deck(2, "");
+  EXPECT_THAT(refusal(document, R"({"edit": "weld", "points": [[60, 10, 0]], "diameter": 5})"),
+              HasSubstr("the yield stress of the welds isn't known from the materials of the sheets: \"yield_stress\" must give it"));
+}
+
+TEST_F(WeldEdit, a_new_part_is_brought_back_undone_and_followed) {
+  Document document = deck(2, "");
+  const std::string before = content_of(folder / "flange.k");
+  const std::filesystem::path path = folder / "session.journal";
+  {
+    Result<Journal> journal = Journal::create(path, document);
+    ASSERT_TRUE(journal);
+    for (const std::string& json :
+         {kNewPart, std::string(R"({"edit": "lock", "on": "4"})"), std::string(R"({"edit": "unlock", "on": "4"})"),
+          std::string(R"({"edit": "weld", "points": [[15, 15, 0]], "like": "beam:1"})"),
+          std::string(R"({"edit": "weld", "points": [[25, 15, 0]], "diameter": 4, "yield_stress": 300})"),
+          std::string(R"({"edit": "set_target_size", "size": 4, "on": "4"})")}) {
+      Result<Prepared> prepared = prepare(document, edit_of(json));
+      ASSERT_TRUE(prepared) << json << prepared.error().text();
+      ASSERT_TRUE(journal->append(document, edit_of(json), *prepared));
+      commit(document, std::move(*prepared));
+    }
+  }
+  Document again = open(folder / "flange.k", {}).value();
+  ASSERT_TRUE(Journal::recover(path, again));
+  EXPECT_EQ(again.current().model.parts->size(), 5u);
+  EXPECT_EQ(again.current().parts->size(), 5u);
+  EXPECT_EQ(again.current().judging->parts.size(), 5u);
+  const std::string wanted = saved(document);
+  EXPECT_THAT(wanted, HasSubstr("         5         5         5\n"));
+  EXPECT_EQ(saved(again), wanted);
+  for (int step = 0; step < 6; ++step) weld(again, R"({"edit": "undo"})");
+  EXPECT_EQ(again.current().parts->size(), 3u);
+  EXPECT_EQ(saved(again), before);
+}
+
+TEST_F(WeldEdit, new_cards_have_the_columns_and_line_ends_of_the_main_file) {
+  std::string text = flange_deck(2, "");
+  // The sheets' cards are narrow by their own keywords.
+  for (const char* keyword : {"*NODE\n", "*ELEMENT_SHELL\n", "*PART\n", "*SECTION_SHELL\n", "*MAT_ELASTIC\n", "*SET_NODE_LIST\n"})
+    for (std::size_t at = 0; (at = text.find(keyword, at)) != std::string::npos; at += 3) text.insert(text.find('\n', at), " -");
+  text.replace(0, 8, "*KEYWORD LONG=Y");
+  std::string windows;
+  for (const char each : text) windows += each == '\n' ? std::string("\r\n") : std::string(1, each);
+  Document document = open_deck(folder / "flange.k", windows);
+  weld(document, R"({"edit": "weld", "points": [[60, 10, 0]], "diameter": 5, "yield_stress": 300})");
+  const std::string after = saved(document);
+  EXPECT_EQ(std::count(after.begin(), after.end(), '\n'), std::count(after.begin(), after.end(), '\r'));
+  EXPECT_THAT(after, HasSubstr("*PART\r\nspot welds\r\n                   4                   4                   4\r\n"));
+  EXPECT_THAT(
+      after,
+      HasSubstr(
+          "*ELEMENT_BEAM\r\n                   1                   4                2126                2127                   0\r\n"));
+  const Document again = open(folder / "saved.k", {}).value();
+  EXPECT_EQ(beams(again).size(), 1u);
+}
+
 }  // namespace
 }  // namespace prismesh::mesh::document
