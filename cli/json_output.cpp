@@ -43,6 +43,14 @@ void add_separated(const document::Separated& separated, Json& object) {
   object["largest_move"] = separated.largest_move;
 }
 
+void add_welded(const document::Welded& welded, Json& object) {
+  Json left = Json::array();
+  for (const document::SpotLeft& spot : welded.left_out) left.push_back({{"at", spot.at}, {"why", printable(spot.why)}});
+  object["welds_added"] = welded.welds_added;
+  object["spots_left"] = welded.spots_left;
+  object["left_out"] = std::move(left);
+}
+
 Json edit_object(const document::EditReport& report) {
   Json notes = Json::array();
   for (const std::string& note : report.notes) notes.push_back(printable(note));
@@ -63,6 +71,7 @@ Json edit_object(const document::EditReport& report) {
   for (const std::string& lost : report.lost) object["lost"].push_back(printable(lost));
   object["lost_connections"] = report.lost_connections;
   if (report.separated) add_separated(*report.separated, object);
+  if (report.welded) add_welded(*report.welded, object);
   if (report.stopped) object["stopped"] = stopped_object(*report.stopped);
   if (report.mass_before) object["mass_before"] = *report.mass_before;
   if (report.mass_after) object["mass_after"] = *report.mass_after;

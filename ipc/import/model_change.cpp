@@ -1,8 +1,10 @@
 #include "ipc/import/model_change.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -20,7 +22,23 @@ using mesh::ShellIndex;
 using mesh::ShellNodes;
 using mesh::Vec3;
 
-constexpr std::uint64_t kChangeMagic = 0x3147'4843'4d53'5250;  // "PRSMCHG1"
+constexpr std::uint64_t kChangeMagic = 0x3247'4843'4d53'5250;  // "PRSMCHG2"
+
+/// Added elements of a class; lists of one length belong together.
+struct AddedElements {
+  std::vector<std::int64_t> ids;
+  std::vector<mesh::PartIndex> parts;
+  std::vector<std::uint32_t> examples;
+  std::vector<std::uint32_t> first_node;  ///< as ElementBlock::first_node
+  std::vector<NodeIndex> nodes;
+};
+
+/// An added part: what saving needs of it.
+struct NewPart {
+  std::int64_t id = 0;
+  std::string name;
+  std::string cards;
+};
 
 /// Lists of one length belong together.
 struct ModelChange {
@@ -36,6 +54,9 @@ struct ModelChange {
   std::vector<ShellNodes> reshaped_to;
   std::vector<ShellIndex> removed_shells;  ///< in the order of their removal, as the nodes
   std::vector<NodeIndex> removed_nodes;
+  std::vector<mesh::PlacedNode> placed;  ///< of the added nodes
+  std::array<AddedElements, mesh::kElementClassCount> elements;
+  std::vector<NewPart> parts;
 };
 
 template <class Archive>
@@ -52,6 +73,35 @@ void describe_change(Archive& io, auto& change) {
   io.array(change.reshaped_to);
   io.array(change.removed_shells);
   io.array(change.removed_nodes);
+  io.array(change.placed);
+  for (auto& added : change.elements) {
+    io.array(added.ids);
+    io.array(added.parts);
+    io.array(added.examples);
+    io.array(added.first_node);
+    io.array(added.nodes);
+  }
+  io.list(change.parts, 24, [&](auto& part) {
+    io.number(part.id);
+    io.text(part.name);
+    io.text(part.cards);
+  });
+}
+
+AddedElements added_elements(const Model& model, std::size_t element_class) {
+  AddedElements added;
+  const mesh::TopologyChange& grown = *model.topology_change;
+  if (!model.elements[element_class]) return added;
+  const mesh::ElementBlock& block = *model.elements[element_class];
+  added.first_node.push_back(0);
+  for (std::size_t e = grown.deck_elements[element_class]; e < block.size(); ++e) {
+    added.ids.push_back(block.id[e]);
+    added.parts.push_back(block.part[e]);
+    added.nodes.insert(added.nodes.end(), block.nodes.begin() + block.first_node[e], block.nodes.begin() + block.first_node[e + 1]);
+    added.first_node.push_back(static_cast<std::uint32_t>(added.nodes.size()));
+  }
+  added.examples = grown.element_examples[element_class];
+  return added;
 }
 
 ModelChange change_between(const Model& original, const Model& model) {
@@ -74,6 +124,10 @@ ModelChange change_between(const Model& original, const Model& model) {
   for (const ShellIndex shell : change.reshaped) change.reshaped_to.push_back(model.shell(shell));
   change.removed_shells = grown.removed_shells;
   change.removed_nodes = grown.removed_nodes;
+  change.placed = grown.placed_nodes;
+  for (std::size_t c = 1; c < change.elements.size(); ++c) change.elements[c] = added_elements(model, c);
+  for (std::size_t p = grown.deck_parts; model.parts && p < model.parts->size(); ++p)
+    change.parts.push_back({(*model.parts)[p].id, (*model.parts)[p].name, grown.added_parts[p - grown.deck_parts].cards});
   return change;
 }
 
@@ -117,6 +171,48 @@ bool are_new(std::vector<std::int64_t> ids, const std::shared_ptr<const mesh::Id
          std::none_of(ids.begin(), ids.end(), [&](std::int64_t id) { return taken->find(id) != mesh::IdIndex::kNotFound; });
 }
 
+/// Whether they are added nodes, ascending.
+bool are_added(const std::vector<mesh::PlacedNode>& placed, std::size_t deck_nodes, std::size_t nodes) {
+  std::size_t next = deck_nodes;
+  for (const mesh::PlacedNode& each : placed) {
+    if (each.node.value < next || each.node.value >= nodes || each.joins_sets > 1) return false;
+    next = each.node.value + 1;
+  }
+  return true;
+}
+
+/// What is wrong with added elements of a class; empty: nothing.
+std::string fault_of(const AddedElements& added, const mesh::ElementBlock* block, std::size_t parts, std::size_t nodes) {
+  const std::size_t count = added.ids.size();
+  if (count == 0 && added.first_node.size() <= 1 && added.nodes.empty() && added.parts.empty() && added.examples.empty()) return "";
+  if (added.parts.size() != count || added.examples.size() != count || added.first_node.size() != count + 1 ||
+      added.first_node.front() != 0 || added.first_node.back() != added.nodes.size() ||
+      !std::is_sorted(added.first_node.begin(), added.first_node.end()))
+    return "added elements lack ids, parts or nodes";
+  if (!all_below(added.nodes, nodes)) return "an added element has a node that doesn't exist";
+  for (std::size_t e = 0; e < count; ++e) {
+    if (added.parts[e].valid() && added.parts[e].value >= parts) return "an added element has a part that doesn't exist";
+    if (added.examples[e] != mesh::kNoExample && (block == nullptr || added.examples[e] >= block->size()))
+      return "an added element is like one that doesn't exist";
+  }
+  std::vector<std::int64_t> ids = added.ids, taken = block != nullptr ? block->id : std::vector<std::int64_t>();
+  std::sort(ids.begin(), ids.end());
+  std::sort(taken.begin(), taken.end());
+  if (ids.front() < 1 || std::adjacent_find(ids.begin(), ids.end()) != ids.end() ||
+      std::any_of(ids.begin(), ids.end(), [&](std::int64_t id) { return std::binary_search(taken.begin(), taken.end(), id); }))
+    return "something added has an id that isn't free";
+  return "";
+}
+
+std::string fault_of(const std::vector<NewPart>& parts, const Model& original) {
+  std::int64_t last = original.parts && !original.parts->empty() ? original.parts->back().id : 0;
+  for (const NewPart& part : parts) {
+    if (part.id <= last || part.cards.empty() || part.cards.back() != '\n') return "an added part has an id that isn't free, or no cards";
+    last = part.id;
+  }
+  return "";
+}
+
 /// What doesn't fit the model; empty: all fits.
 std::string fault_of(const ModelChange& change, const Model& original) {
   const std::size_t nodes = original.node_count() + change.node_ids.size(), shells = original.shell_count() + change.shell_ids.size();
@@ -141,13 +237,37 @@ std::string fault_of(const ModelChange& change, const Model& original) {
   if (!all_below(change.removed_shells, shells) || !all_differ(change.removed_shells) || !all_below(change.removed_nodes, nodes) ||
       !all_differ(change.removed_nodes))
     return "something is removed that doesn't exist, or twice";
+  if (!are_added(change.placed, original.node_count(), nodes)) return "a placed node wasn't added";
+  if (std::string fault = fault_of(change.parts, original); !fault.empty()) return fault;
+  const std::size_t parts = (original.parts ? original.parts->size() : 0) + change.parts.size();
+  for (std::size_t c = 1; c < change.elements.size(); ++c)
+    if (std::string fault = fault_of(change.elements[c], original.elements[c].get(), parts, nodes); !fault.empty()) return fault;
   return "";
 }
 
 void apply(const ModelChange& change, Model& model) {
   for (std::size_t m = 0; m < change.moved.size(); ++m) model.positions.set(change.moved[m].value, change.moved_to[m]);
-  for (std::size_t n = 0; n < change.node_ids.size(); ++n)
-    mesh::add_node(model, change.node_ids[n], change.node_positions[n], change.node_origins[n]);
+  auto placed = change.placed.begin();
+  for (std::size_t n = 0; n < change.node_ids.size(); ++n) {
+    if (placed != change.placed.end() && placed->node.value == model.node_count())
+      mesh::add_placed_node(model, change.node_ids[n], change.node_positions[n], change.node_origins[n], (placed++)->joins_sets != 0);
+    else
+      mesh::add_node(model, change.node_ids[n], change.node_positions[n], change.node_origins[n]);
+  }
+  for (const NewPart& part : change.parts) {
+    mesh::Part added;
+    added.id = part.id;
+    added.name = part.name;
+    added.defined = true;
+    mesh::add_part(model, std::move(added), {part.cards});
+  }
+  for (std::size_t c = 1; c < change.elements.size(); ++c) {
+    const AddedElements& added = change.elements[c];
+    for (std::size_t e = 0; e < added.ids.size(); ++e)
+      mesh::add_element(model, static_cast<mesh::ElementClass>(c), added.ids[e], added.parts[e],
+                        std::span(added.nodes).subspan(added.first_node[e], added.first_node[e + 1] - added.first_node[e]),
+                        added.examples[e]);
+  }
   for (std::size_t s = 0; s < change.shell_ids.size(); ++s)
     mesh::add_shell(model, change.shell_ids[s], change.shell_nodes[s], change.shell_parents[s]);
   for (std::size_t r = 0; r < change.reshaped.size(); ++r) mesh::set_shell_nodes(model, change.reshaped[r], change.reshaped_to[r]);

@@ -108,13 +108,15 @@ PRISMESH_JSON_OBJECT(mesh::document::RegionLeft, f("a", m.a), f("b", m.b), f("wh
 PRISMESH_JSON_OBJECT(mesh::document::Separated, f("regions_before", m.regions_before), f("regions_removed", m.regions_removed),
                      f("regions_left", m.regions_left), f("depth_before", m.depth_before), f("depth_after", m.depth_after),
                      f("largest_move", m.largest_move));
+PRISMESH_JSON_OBJECT(mesh::document::SpotLeft, f("at", m.at), f("why", m.why));
+PRISMESH_JSON_OBJECT(mesh::document::Welded, f("welds_added", m.welds_added), f("spots_left", m.spots_left), f("left_out", m.left_out));
 PRISMESH_JSON_OBJECT(mesh::document::EditReport, f("edit", m.edit), f("nodes_moved", m.nodes_moved), f("largest_move", m.largest_move),
                      f("elements_added", m.elements_added), f("elements_removed", m.elements_removed), f("before", m.before),
                      f("after", m.after), f("clusters_before", m.clusters_before), f("clusters_after", m.clusters_after),
-                     f("triangle_pairs", m.triangle_pairs), f("stopped", m.stopped), f("separated", m.separated), f("inverted", m.inverted),
-                     f("lost_connections", m.lost_connections), f("lost", m.lost), f("mass_before", m.mass_before),
-                     f("mass_after", m.mass_after), f("cog_before", m.centre_before), f("cog_after", m.centre_after), f("notes", m.notes),
-                     f("ms", m.milliseconds));
+                     f("triangle_pairs", m.triangle_pairs), f("stopped", m.stopped), f("separated", m.separated), f("welded", m.welded),
+                     f("inverted", m.inverted), f("lost_connections", m.lost_connections), f("lost", m.lost),
+                     f("mass_before", m.mass_before), f("mass_after", m.mass_after), f("cog_before", m.centre_before),
+                     f("cog_after", m.centre_after), f("notes", m.notes), f("ms", m.milliseconds));
 
 }  // namespace prismesh::json
 

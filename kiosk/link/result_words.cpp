@@ -60,6 +60,7 @@ std::string words_of_edit(const Edit& edit, std::string_view unit) {
         if constexpr (std::is_same_v<E, Repair>) return "Repaired";
         if constexpr (std::is_same_v<E, Restructure>) return of_operation(each.operation);
         if constexpr (std::is_same_v<E, Separate>) return "Separated";
+        if constexpr (std::is_same_v<E, Weld>) return "Welded";
         return {};
       },
       edit);

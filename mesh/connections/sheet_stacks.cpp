@@ -41,10 +41,31 @@ Vec3 double_area(const Model& model, ShellIndex shell) {
   return (at(2) - at(0)).cross(at(3) - at(1));
 }
 
+}  // namespace
+
+std::optional<double> height_of(const spatial::BoxTree& tree, ShellIndex shell, const Vec3& point, const Vec3& normal) {
+  static const double min_cos = std::cos(kMaxAngleOfFlange * std::numbers::pi / 180);
+  std::optional<double> height;
+  tree.each_triangle(shell, [&](const Vec3& a, const Vec3& b, const Vec3& c, bool) {
+    const Vec3 face = (b - a).cross(c - a);
+    const double size = std::sqrt(face.squaredNorm()), along = face.dot(normal);
+    if (height || !(size > 0) || std::abs(along) < min_cos * size) return;
+    const double at = (a - point).dot(face) / along;
+    const Vec3 on = point + at * normal;
+    const auto inside = [&](const Vec3& from, const Vec3& to) {
+      return (to - from).cross(on - from).dot(face) >= -kStackRounding * size * size;
+    };
+    if (inside(a, b) && inside(b, c) && inside(c, a)) height = at;
+  });
+  return height;
+}
+
+namespace {
+
 class StackFinder {
  public:
   StackFinder(const Model& model, const spatial::BoxTree& tree, const FlangeOptions& options)
-      : model_(model), tree_(tree), options_(options), min_cos_(std::cos(kMaxAngleOfFlange * std::numbers::pi / 180)) {
+      : model_(model), tree_(tree), options_(options) {
     for (std::size_t s = 0; s < model.shell_count(); ++s)
       if (in_sight(model, ShellIndex(s), options.out_of_sight)) max_thickness_ = std::max(max_thickness_, thickness(ShellIndex(s)));
   }
@@ -90,7 +111,7 @@ class StackFinder {
     const Vec3 first = centre + (from - more) * normal, last = centre + (to + more) * normal;
     tree_.near_box(first.cwiseMin(last), first.cwiseMax(last), step, [&](ShellIndex other, const spatial::FloatBox&) {
       if (other == shell || !in_sight(model_, other, options_.out_of_sight) || have_common_node(nodes, model_.shell(other))) return true;
-      const std::optional<double> height = height_of(other, centre, normal);
+      const std::optional<double> height = height_of(tree_, other, centre, normal);
       if (height && *height >= from - more && *height <= to + more)
         hits.push_back({*height, std::llround(*height / step), model_.shell_parts[other.value], other});
       return true;
@@ -103,23 +124,6 @@ class StackFinder {
       return b.level - a.level <= 1 && a.part == b.part && have_common_node(model_.shell(a.shell), model_.shell(b.shell));
     };
     hits.erase(std::unique(hits.begin(), hits.end(), repeats), hits.end());
-  }
-
-  /// Where the line through the point goes through the shell, if its planes are parallel enough.
-  std::optional<double> height_of(ShellIndex shell, const Vec3& point, const Vec3& normal) const {
-    std::optional<double> height;
-    tree_.each_triangle(shell, [&](const Vec3& a, const Vec3& b, const Vec3& c, bool) {
-      const Vec3 face = (b - a).cross(c - a);
-      const double size = std::sqrt(face.squaredNorm()), along = face.dot(normal);
-      if (height || !(size > 0) || std::abs(along) < min_cos_ * size) return;
-      const double at = (a - point).dot(face) / along;
-      const Vec3 on = point + at * normal;
-      const auto inside = [&](const Vec3& from, const Vec3& to) {
-        return (to - from).cross(on - from).dot(face) >= -kStackRounding * size * size;
-      };
-      if (inside(a, b) && inside(b, c) && inside(c, a)) height = at;
-    });
-    return height;
   }
 
   /// The hits of the stack; nothing if it has one sheet or too many.
@@ -152,7 +156,6 @@ class StackFinder {
   const Model& model_;
   const spatial::BoxTree& tree_;
   const FlangeOptions& options_;
-  double min_cos_;
   double max_thickness_ = 0;
 };
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "base/progress.h"
@@ -28,6 +29,10 @@ struct SheetStack {
   bool same_order(const SheetStack& other, bool opposite) const;
   bool same_parts(const SheetStack& other) const { return same_order(other, false) || same_order(other, true); }
 };
+
+/// Where the line through the point goes through the shell, as a distance along the unit normal; nothing if it doesn't, or if the planes
+/// differ by more than kMaxAngleOfFlange.
+std::optional<double> height_of(const spatial::BoxTree& tree, ShellIndex shell, const Vec3& point, const Vec3& normal);
 
 /// The unit normal; zero of a shell without area.
 Vec3 unit_normal(const Model& model, ShellIndex shell);

@@ -11,6 +11,7 @@
 #include "mesh/document/judging_rules.h"
 #include "mesh/document/parts_of_selection.h"
 #include "mesh/document/self_contained.h"
+#include "mesh/document/weld_places.h"
 
 namespace prismesh::mesh::document {
 
@@ -139,6 +140,10 @@ Result<void> apply_edit(const Document& document, const SetCriteria& edit, Gener
 }
 
 Result<Edit> self_contained(const Document& document, const Edit& edit) {
+  if (const auto* weld = std::get_if<Weld>(&edit)) {
+    Result<Weld> whole = with_points(document, *weld);
+    return whole ? Result<Edit>(std::move(*whole)) : fail(whole.error());
+  }
   const auto* set = std::get_if<SetCriteria>(&edit);
   if (set == nullptr) return edit;
   if (const Result<void> sound = check_fields(*set); !sound) return fail(sound.error());

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "mesh/document/chosen_criteria.h"
+#include "mesh/document/grow_parts.h"
 #include "mesh/document/judging_rules.h"
 #include "mesh/model/topology_change.h"
 
@@ -18,6 +19,7 @@ namespace {
 constexpr std::uint8_t kVersion = 2;
 constexpr std::uint8_t kVersionWithSizes = 3;      ///< as 2, followed by target sizes; written where an edit set any
 constexpr std::uint8_t kVersionWithCriteria = 4;   ///< as 3, followed by criteria; written where an edit set any
+constexpr std::uint8_t kVersionWithElements = 5;   ///< as 4, with elements, parts and placed nodes; written where an edit added any
 constexpr std::uint8_t kVersionWithoutGrowth = 1;  ///< of journals that were written before edits could change the structure
 
 // --- writing ---
@@ -72,13 +74,24 @@ void write_indices(const std::vector<IndexType>& indices, DeltaWriter& out, cons
   }
 }
 
+// What follows, in the second byte of version 5.
+constexpr std::uint8_t kHasSizes = 1;
+constexpr std::uint8_t kHasCriteria = 2;
+
+// Bits beside the number of an added node's parents.
+constexpr std::uint8_t kPlaced = 8;
+constexpr std::uint8_t kJoinsSets = 16;
+
 /// Writes new entries one by one. None of them is removed: an edit doesn't remove what it adds.
 void write_added(const Model& before, const Model& model, DeltaWriter& out) {
   out.number(model.node_count() - before.node_count());
   for (std::size_t n = before.node_count(); n < model.node_count(); ++n) {
     out.number(static_cast<std::uint64_t>(model.node_ids[n]));
     const NodeOrigin& origin = origin_of(model, NodeIndex(n));
-    out.byte(static_cast<std::uint8_t>(origin.count()));
+    const PlacedNode* placed = placed_node(model, NodeIndex(n));
+    out.byte(static_cast<std::uint8_t>(origin.count() | (placed == nullptr         ? 0
+                                                         : placed->joins_sets != 0 ? kPlaced | kJoinsSets
+                                                                                   : kPlaced)));
     for (std::size_t p = 0; p < static_cast<std::size_t>(origin.count()); ++p) {
       out.number(origin.parent[p].value);
       out.bits(origin.weight[p]);
@@ -93,9 +106,45 @@ void write_added(const Model& before, const Model& model, DeltaWriter& out) {
   }
 }
 
-void write_growth(const Model& before, const Model& after, DeltaWriter& out) {
+void write_optional(const std::optional<std::int64_t>& value, DeltaWriter& out) {
+  out.number(value && *value >= 0 ? static_cast<std::uint64_t>(*value) + 1 : 0);
+}
+
+void write_optional(const std::optional<double>& value, DeltaWriter& out) {
+  out.byte(value ? 1 : 0);
+  if (value) out.bits(*value);
+}
+
+/// Parts, then the elements of each class.
+void write_parts_and_elements(const Model& after, const Changes& changes, DeltaWriter& out) {
+  out.number(changes.added_parts.size());
+  for (const PartIndex index : changes.added_parts) {
+    const Part& part = (*after.parts)[index.value];
+    out.number(static_cast<std::uint64_t>(part.id));
+    out.text(part.name);
+    write_optional(part.section, out);
+    write_optional(part.material, out);
+    for (const std::optional<double>* value : {&part.thickness, &part.density, &part.youngs_modulus, &part.poissons_ratio})
+      write_optional(*value, out);
+    out.byte(part.limits_time_step ? 1 : 0);
+    out.text(after.topology_change->added_parts[index.value - after.topology_change->deck_parts].cards);
+  }
+  for (std::size_t c = 1; c < changes.added_elements.size(); ++c) {
+    out.number(changes.added_elements[c].size());
+    for (const std::uint32_t e : changes.added_elements[c]) {
+      const ElementBlock& block = *after.elements[c];
+      out.number(static_cast<std::uint64_t>(block.id[e]));
+      out.number(block.part[e].valid() ? std::uint64_t{block.part[e].value} + 1 : 0);
+      const std::uint32_t example = after.topology_change->element_examples[c][e - after.topology_change->deck_elements[c]];
+      out.number(example == kNoExample ? 0 : std::uint64_t{example} + 1);
+      out.number(block.first_node[e + 1] - block.first_node[e]);
+      for (std::size_t n = block.first_node[e]; n < block.first_node[e + 1]; ++n) out.number(block.nodes[n].value);
+    }
+  }
+}
+
+void write_growth(const Model& before, const Model& after, const Changes& changes, DeltaWriter& out) {
   write_added(before, after, out);
-  Changes changes = changes_between(before, after);
   write_indices(changes.reshaped_shells, out, [&](ShellIndex shell) { write_corners(after.shell(shell), out); });
   write_indices(changes.removed_shells, out, [](ShellIndex) {});
   write_indices(changes.removed_nodes, out, [](NodeIndex) {});
@@ -287,14 +336,17 @@ std::int64_t read_id(DeltaReader& in, const IdIndex& taken) {
   return id;
 }
 
-void read_added_nodes(DeltaReader& in, Model& model) {
+/// `with_placed`: nodes may lie between no others.
+void read_added_nodes(DeltaReader& in, bool with_placed, Model& model) {
   const std::uint64_t count = in.count(35);
   for (std::uint64_t i = 0; i < count; ++i) {
     const std::int64_t id = read_id(in, *model.node_index);
-    const std::uint8_t parents = in.byte();
-    if (!in.ok() || parents < 1 || parents > 4) return in.refuse();
+    const std::uint8_t kind = in.byte();
+    const bool placed = (kind & kPlaced) != 0, joins_sets = (kind & kJoinsSets) != 0;
+    const int parents = kind & ~(kPlaced | kJoinsSets);
+    if (!in.ok() || parents < 1 || parents > 4 || (placed && !with_placed) || (joins_sets && !placed)) return in.refuse();
     NodeOrigin origin;
-    for (std::size_t p = 0; p < parents; ++p) {
+    for (std::size_t p = 0; p < static_cast<std::size_t>(parents); ++p) {
       origin.parent[p] = read_node(in, model, model.node_count());
       origin.weight[p] = in.bits();
       if (!in.ok() || !(origin.weight[p] > 0 && origin.weight[p] <= 1)) return in.refuse();
@@ -302,8 +354,72 @@ void read_added_nodes(DeltaReader& in, Model& model) {
     Vec3 position;
     for (int k = 0; k < 3; ++k) position[k] = in.bits();
     if (!in.ok() || !position.allFinite()) return in.refuse();
-    add_node(model, id, position, origin);
+    if (placed)
+      add_placed_node(model, id, position, origin, joins_sets);
+    else
+      add_node(model, id, position, origin);
   }
+}
+
+std::optional<std::int64_t> read_optional_id(DeltaReader& in) {
+  const std::uint64_t value = in.number();
+  return value == 0 ? std::nullopt : std::optional(static_cast<std::int64_t>(value - 1));
+}
+
+std::optional<double> read_optional_number(DeltaReader& in) {
+  const std::uint8_t is_there = in.byte();
+  if (is_there > 1) in.refuse();
+  return is_there == 1 ? std::optional(in.bits()) : std::nullopt;
+}
+
+void read_new_parts(DeltaReader& in, Model& model) {
+  const std::uint64_t count = in.count(10);
+  for (std::uint64_t i = 0; i < count; ++i) {
+    Part part;
+    part.id = static_cast<std::int64_t>(in.number());
+    part.defined = true;
+    part.name = in.text();
+    part.section = read_optional_id(in);
+    part.material = read_optional_id(in);
+    for (std::optional<double>* value : {&part.thickness, &part.density, &part.youngs_modulus, &part.poissons_ratio})
+      *value = read_optional_number(in);
+    const std::uint8_t limits = in.byte();
+    AddedPart added{in.text()};
+    if (!in.ok() || limits > 1 || part.id < 1 || (!model.parts->empty() && part.id <= model.parts->back().id)) return in.refuse();
+    part.limits_time_step = limits == 1;
+    add_part(model, std::move(part), std::move(added));
+  }
+}
+
+void read_elements_of(DeltaReader& in, ElementClass element_class, Model& model) {
+  const auto c = static_cast<std::size_t>(element_class);
+  const std::uint64_t count = in.count(5);
+  if (count == 0) return;
+  std::vector<std::int64_t> taken = model.elements[c] ? model.elements[c]->id : std::vector<std::int64_t>();
+  std::sort(taken.begin(), taken.end());
+  // elements that were added before are no examples
+  const std::size_t in_deck = model.topology_change ? model.topology_change->deck_elements[c] : taken.size();
+  std::vector<std::int64_t> given;
+  for (std::uint64_t i = 0; i < count; ++i) {
+    const auto id = static_cast<std::int64_t>(in.number());
+    const std::uint64_t part = in.number(), example = in.number();
+    std::vector<NodeIndex> nodes(in.count(1));
+    for (NodeIndex& node : nodes) node = read_node(in, model, model.node_count());
+    if (!in.ok() || id < 1 || std::binary_search(taken.begin(), taken.end(), id) || part > model.parts->size() || example > in_deck ||
+        nodes.empty())
+      return in.refuse();
+    given.push_back(id);
+    add_element(model, element_class, id, part == 0 ? PartIndex() : PartIndex(static_cast<std::size_t>(part - 1)), nodes,
+                example == 0 ? kNoExample : static_cast<std::uint32_t>(example - 1));
+  }
+  std::sort(given.begin(), given.end());
+  if (std::adjacent_find(given.begin(), given.end()) != given.end()) in.refuse();
+}
+
+void read_parts_and_elements(DeltaReader& in, Model& model) {
+  if (!model.parts) return in.refuse();
+  read_new_parts(in, model);
+  for (std::size_t c = 1; c < model.elements.size() && in.ok(); ++c) read_elements_of(in, static_cast<ElementClass>(c), model);
 }
 
 /// Calls `body` with each of ascending indices below `end`.
@@ -320,9 +436,9 @@ void read_indices(DeltaReader& in, std::size_t bytes_each, std::size_t end, cons
   }
 }
 
-void read_growth(DeltaReader& in, Model& model) {
+void read_growth(DeltaReader& in, bool with_elements, Model& model) {
   const std::size_t nodes_before = model.node_count(), shells_before = model.shell_count();
-  read_added_nodes(in, model);
+  read_added_nodes(in, with_elements, model);
   const std::uint64_t count = in.ok() ? in.count(6) : 0;
   for (std::uint64_t i = 0; i < count && in.ok(); ++i) {
     const std::int64_t id = read_id(in, *model.shell_index);
@@ -460,14 +576,18 @@ void read_judging(DeltaReader& in, bool with_criteria, Generation& generation) {
 
 std::size_t grown(std::size_t size, std::int64_t by) { return static_cast<std::size_t>(static_cast<std::int64_t>(size) + by); }
 
-}  // namespace
-
-std::vector<std::byte> encode_delta(const Generation& before, const Generation& after) {
+std::vector<std::byte> encode_delta_of(const Generation& before, const Generation& after, const Changes& changes) {
   DeltaWriter out;
   const bool has_sizes = before.judging != after.judging && before.judging && after.judging;
   const bool has_criteria = has_sizes && !have_same_criteria(*before.judging, *after.judging);
-  out.byte(has_criteria ? kVersionWithCriteria : has_sizes ? kVersionWithSizes : kVersion);
-  write_growth(before.model, after.model, out);
+  const std::size_t nodes_before = before.model.node_count();
+  const std::vector<PlacedNode>* placed = after.model.topology_change ? &after.model.topology_change->placed_nodes : nullptr;
+  const bool has_placed = placed != nullptr && !placed->empty() && placed->back().node.value >= nodes_before;
+  const bool has_elements = has_placed || changes.other_elements() > 0 || !changes.added_parts.empty();
+  out.byte(has_elements ? kVersionWithElements : has_criteria ? kVersionWithCriteria : has_sizes ? kVersionWithSizes : kVersion);
+  if (has_elements) out.byte(static_cast<std::uint8_t>((has_sizes ? kHasSizes : 0) | (has_criteria ? kHasCriteria : 0)));
+  write_growth(before.model, after.model, changes, out);
+  if (has_elements) write_parts_and_elements(after.model, changes, out);
   write_moved(before, after, out);
   write_runs(changed_runs(before.node_marks, after.node_marks), out);
   write_runs(changed_runs(before.shell_marks, after.shell_marks), out);
@@ -478,11 +598,33 @@ std::vector<std::byte> encode_delta(const Generation& before, const Generation& 
   return out.take();
 }
 
+}  // namespace
+
+std::vector<std::byte> encode_delta(const Generation& before, const Generation& after) {
+  const Changes changes = changes_between(before.model, after.model);
+  if (!changes.added_parts.empty()) {
+    // What the new parts are judged by, and their states, are compared with those of new parts.
+    Generation grown = before;
+    grow_parts(after.model.parts->size(), grown);
+    return encode_delta_of(grown, after, changes);
+  }
+  return encode_delta_of(before, after, changes);
+}
+
 Result<NodeSet> apply_delta(std::span<const std::byte> delta, Generation& generation) {
   DeltaReader in(delta);
   const std::uint8_t version = in.byte();
-  if (version < kVersionWithoutGrowth || version > kVersionWithCriteria) return fail("", "its delta is of another version");
-  if (version != kVersionWithoutGrowth) read_growth(in, generation.model);
+  if (version < kVersionWithoutGrowth || version > kVersionWithElements) return fail("", "its delta is of another version");
+  const bool with_elements = version == kVersionWithElements;
+  const std::uint8_t has = with_elements                     ? in.byte()
+                           : version == kVersionWithCriteria ? kHasSizes | kHasCriteria
+                           : version == kVersionWithSizes    ? kHasSizes
+                                                             : 0;
+  if (has > (kHasSizes | kHasCriteria) || has == kHasCriteria) in.refuse();
+  if (version != kVersionWithoutGrowth) read_growth(in, with_elements, generation.model);
+  if (with_elements && in.ok()) read_parts_and_elements(in, generation.model);
+  if (!in.ok()) return fail("", "its delta doesn't fit the model");
+  if (generation.model.parts) grow_parts(generation.model.parts->size(), generation);
   generation.node_marks.resize(generation.model.node_count());
   generation.shell_marks.resize(generation.model.shell_count());
   NodeSet moved = read_moved(in, generation.model);
@@ -492,9 +634,9 @@ Result<NodeSet> apply_delta(std::span<const std::byte> delta, Generation& genera
   if (kind > static_cast<std::uint8_t>(select::EntityKind::part)) in.refuse();
   generation.selection_kind = static_cast<select::EntityKind>(kind);
   read_parts(in, generation);
-  if (version >= kVersionWithSizes) {
+  if ((has & kHasSizes) != 0) {
     if (!generation.judging) return fail("", "its delta doesn't fit the model");
-    read_judging(in, version == kVersionWithCriteria, generation);
+    read_judging(in, (has & kHasCriteria) != 0, generation);
   }
   if (!in.at_end()) return fail("", "its delta doesn't fit the model");
   return moved;

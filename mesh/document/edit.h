@@ -218,6 +218,26 @@ struct Separate {
   FollowUp follow = FollowUp::none;
 };
 
+/// Joins the sheets that lie on each other at spots by welds (docs/welds.md). Where: one of `flange`, `along`, `points`, `points_file`.
+/// Lengths are in the deck's unit.
+struct Weld {
+  std::optional<SelectFlange> flange;                        ///< along the middle of these flanges
+  std::optional<std::vector<std::array<double, 3>>> along;   ///< along a line through these points
+  std::optional<std::vector<std::array<double, 3>>> points;  ///< at these points
+  std::optional<std::string> points_file;                    ///< at the points of a table (a path relative to the deck's folder)
+  std::optional<double> pitch;                               ///< of `flange` and `along` (required); points: welds nearer than half are one
+  std::optional<double> end_distance;                        ///< of the first and last weld from the ends; absent: half the pitch
+  std::optional<double> edge_distance;                       ///< of `flange`: the least from its two sides; absent: any
+  std::optional<int> sheets;                                 ///< how many of those that lie on each other are joined; absent: all
+  std::optional<std::string> parts;                          ///< an expression of parts: only their sheets count
+  double gap = 0;                                            ///< sheets may be farther apart than by their thickness by this
+  std::optional<std::string> like;                           ///< "beam:9": an element whose part and card the new ones get
+  std::optional<double> diameter;                            ///< without `like`: of a new section
+  // without `like`, of the new material, in the deck's units; absent: the least of the sheets'
+  std::optional<double> density, youngs_modulus, poissons_ratio, yield_stress;
+  std::optional<std::string> as;  ///< what a weld is: "beam"; absent: as `like`
+};
+
 struct Undo {};
 struct Redo {};
 /// Makes redo lead to a branch that leaves from the current state. What redo led to before becomes a branch.
@@ -226,7 +246,7 @@ struct TakeBranch {
 };
 
 using Edit = std::variant<Select, SelectRegion, SelectLasso, SelectFlange, Grow, Shrink, Invert, SetParts, SetTargetSize, SetCriteria,
-                          Translate, Lift, Slide, Rotate, Move, Relax, Repair, Restructure, Separate, Undo, Redo, TakeBranch>;
+                          Translate, Lift, Slide, Rotate, Move, Relax, Repair, Restructure, Separate, Weld, Undo, Redo, TakeBranch>;
 
 /// The Shaping of a shaping edit; null for the others.
 const Shaping* shaping_of(const Edit& edit);

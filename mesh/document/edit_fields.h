@@ -100,6 +100,9 @@ inline constexpr WholeNumberLimits kAttempts{1, 1000};  ///< of a repair, over i
 inline constexpr ListLimits kSteps{1, 1'000'000, "whole numbers like [532, 0]", ""};
 inline constexpr ListLimits kOutline{3, 100'000, "points [x, y]", "point"};
 inline constexpr ListLimits kEntities{1, 1000, "entities like [\"shell:12\", \"shell:40\"]", ""};
+inline constexpr ListLimits kLinePoints{2, 100'000, "points [x, y, z]", "point"};
+inline constexpr ListLimits kWeldPoints{1, 1'000'000, "points [x, y, z]", "point"};
+inline constexpr WholeNumberLimits kSheetsOfWeld{2, 6};
 inline constexpr ListLimits kContactKinds{1, 2, "kinds of contact like [\"perforation\", \"penetration\"]", ""};
 inline constexpr TwoWords kNormals{"grab", "each", "\"grab\" (all nodes along the normal at the grab) or \"each\""};
 
@@ -174,6 +177,13 @@ PRISMESH_JSON_OBJECT(mesh::document::Separate, f("on", m.on), f("against", m.aga
                      f("joined", m.joined), f("gap", m.gap, kNotNegative), f("move", m.move),
                      f("direction", m.direction, DirectionLimits{}), f("max_move", m.max_move, kPositive),
                      f("allowed_depth", m.allowed_depth, kNotNegative), f("follow", m.follow));
+PRISMESH_JSON_OBJECT(mesh::document::Weld, f("flange", m.flange), f("along", m.along, kLinePoints), f("points", m.points, kWeldPoints),
+                     f("points_file", m.points_file), f("pitch", m.pitch, kPositive), f("end_distance", m.end_distance, kNotNegative),
+                     f("edge_distance", m.edge_distance, kNotNegative), f("sheets", m.sheets, kSheetsOfWeld), f("parts", m.parts),
+                     f("gap", m.gap, kNotNegative), f("like", m.like), f("diameter", m.diameter, kPositive),
+                     f("density", m.density, kPositive), f("youngs_modulus", m.youngs_modulus, kPositive),
+                     f("poissons_ratio", m.poissons_ratio, NumberLimits{0, 0.5}), f("yield_stress", m.yield_stress, kPositive),
+                     f("as", m.as));
 PRISMESH_JSON_OBJECT(mesh::document::Undo, );
 PRISMESH_JSON_OBJECT(mesh::document::Redo, );
 PRISMESH_JSON_OBJECT(mesh::document::TakeBranch, f.required("number", m.number));

@@ -19,7 +19,7 @@ using json::listed;
 using json::must_be;
 
 /// Edits that the command line's contract names and that this version doesn't have.
-constexpr std::string_view kNotBuilt[] = {"weld", "bond", "replace_part"};
+constexpr std::string_view kNotBuilt[] = {"bond", "replace_part"};
 
 /// The edit that the field "edit" names, with its defaults.
 Result<Edit> blank_edit(const Json& json) {

@@ -37,6 +37,7 @@ std::span<const EditKind> edit_kinds() {
         {"relax", mending, Relax{}},
         {"repair", mending, Repair{}},
         {"separate", EditGroup::contact, Separate{}},
+        {"weld", joining, Weld{}},
         {"undo", step, Undo{}},
         {"redo", step, Redo{}},
         {"branch", step, TakeBranch{}},

@@ -14,6 +14,7 @@ enum class EditGroup : std::uint8_t {
   parts,      ///< changes the parts' states, or what they are judged by
   shaping,    ///< changes the shape, which relaxing and repairing then keep; has a Shaping and a Displacement, can be dragged
   mending,    ///< relaxes nodes or changes the structure, and keeps the shape
+  joining,    ///< adds connections between sheets
   contact,    ///< moves shells apart, which changes the shape
   step,       ///< goes to another generation of the history
 };

@@ -37,6 +37,18 @@ struct Separated {
   double largest_move = 0;
 };
 
+/// A spot at which `weld` made no weld.
+struct SpotLeft {
+  std::array<double, 3> at{};
+  std::string why;
+};
+/// What `weld` did.
+struct Welded {
+  std::size_t welds_added = 0;  ///< spots; of three sheets one has two elements
+  std::size_t spots_left = 0;
+  std::vector<SpotLeft> left_out;  ///< the first thousand of them
+};
+
 struct EditReport {
   std::string edit;
   std::size_t nodes_moved = 0;
@@ -50,6 +62,7 @@ struct EditReport {
   std::size_t triangle_pairs = 0;  ///< of `repair`: edges between two triangles that it made and that stay (docs/repairing.md)
   std::optional<StoppedRepair> stopped;
   std::optional<Separated> separated;  ///< of `separate`
+  std::optional<Welded> welded;        ///< of `weld`
   // of edits that move nodes:
   std::size_t inverted = 0;           ///< shells that it turned over or folded (docs/shaping.md)
   std::size_t lost_connections = 0;   ///< nodes that lay on a sheet and no longer do (docs/connections.md)

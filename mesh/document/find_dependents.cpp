@@ -32,12 +32,21 @@ Dependents find_dependents(const deck::Deck& deck, const Model& model, std::span
   std::stable_sort(candidates.begin(), candidates.end(), by_node);
   candidates.erase(std::unique(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) { return a.node == b.node; }),
                    candidates.end());
-  dependents.on_sheets = connections::find_sheets(model, std::move(candidates));
+  add_on_sheets(connections::find_sheets(model, std::move(candidates)), dependents);
+  return dependents;
+}
+
+void add_on_sheets(std::vector<NodeOnSheet> more, Dependents& dependents) {
+  std::vector<NodeOnSheet>& all = dependents.on_sheets;
+  const auto by_node = [](const NodeOnSheet& a, const NodeOnSheet& b) { return a.node < b.node; };
+  const auto old = static_cast<std::ptrdiff_t>(all.size());
+  all.insert(all.end(), more.begin(), more.end());
+  std::inplace_merge(all.begin(), all.begin() + old, all.end(), by_node);
+  all.erase(std::unique(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.node == b.node; }), all.end());
   dependents.on_sheets_by_shell.resize(dependents.on_sheets.size());
   std::iota(dependents.on_sheets_by_shell.begin(), dependents.on_sheets_by_shell.end(), 0u);
   std::stable_sort(dependents.on_sheets_by_shell.begin(), dependents.on_sheets_by_shell.end(),
                    [&](std::uint32_t a, std::uint32_t b) { return dependents.on_sheets[a].shell < dependents.on_sheets[b].shell; });
-  return dependents;
 }
 
 }  // namespace prismesh::mesh::document

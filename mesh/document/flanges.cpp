@@ -88,7 +88,7 @@ struct Place {
   Vec3 point = Vec3::Zero();
 };
 
-Result<Place> place_of(const Generation& generation, const NodeReference& at) {
+Result<Place> place_of(const Generation& generation, const NodeReference& at, const std::string& who) {
   const Model& model = generation.model;
   const std::vector<std::uint8_t> hidden = hidden_parts(generation);
   Place place;
@@ -98,17 +98,18 @@ Result<Place> place_of(const Generation& generation, const NodeReference& at) {
     place.shells = select::shells_near(model, place.point, hidden);
   } else {
     const Result<NodeIndex> node = find_referenced_node(model, at);
-    if (!node) return fail("", "select_flange: " + node.error().message);
+    if (!node) return fail("", who + ": " + node.error().message);
     place.point = model.position(*node);
     place.words = "node " + std::to_string(model.node_ids[node->value]);
     place.shells = select::shells_at(model, *node, hidden);
   }
-  if (place.shells.empty()) return fail("", "select_flange: no shell is in sight at " + place.words + ", so there is no flange");
+  if (place.shells.empty()) return fail("", who + ": no shell is in sight at " + place.words + ", so there is no flange");
   return place;
 }
 
-Result<ShellSet> shells_at_place(const Generation& generation, const Flanges& flanges, const NodeReference& at) {
-  const Result<Place> place = place_of(generation, at);
+Result<std::vector<Flange>> flanges_at_place(const Generation& generation, const Flanges& flanges, const NodeReference& at,
+                                             const std::string& who) {
+  const Result<Place> place = place_of(generation, at, who);
   if (!place) return fail(place.error());
   // At a node where two flanges meet, the one that more of its shells belong to; of equal ones the longer.
   const Flange* best = nullptr;
@@ -119,20 +120,20 @@ Result<ShellSet> shells_at_place(const Generation& generation, const Flanges& fl
     }));
     if (there > most) most = there, best = &flange;
   }
-  if (best != nullptr) return best->shells;
-  return fail("", "select_flange: there is no flange at " + place->words + nearest_flange(generation.model, flanges, place->point));
+  if (best != nullptr) return std::vector<Flange>{*best};
+  return fail("", who + ": there is no flange at " + place->words + nearest_flange(generation.model, flanges, place->point));
 }
 
-Result<ShellSet> shells_between(const Model& model, const Flanges& flanges, const std::vector<PartIndex>& parts, const std::string& named) {
-  ShellSet shells;
+Result<std::vector<Flange>> flanges_between(const Model& model, const Flanges& flanges, const std::vector<PartIndex>& parts,
+                                            const SelectFlange& edit, const std::string& who) {
+  std::vector<Flange> wanted;
   for (const Flange& flange : flanges.all) {
     const auto of_these = std::count_if(flange.parts.begin(), flange.parts.end(),
                                         [&](PartIndex part) { return std::find(parts.begin(), parts.end(), part) != parts.end(); });
-    if (of_these >= 2) shells.insert(shells.end(), flange.shells.begin(), flange.shells.end());
+    if (of_these >= 2) wanted.push_back(flange);
   }
-  std::sort(shells.begin(), shells.end());
-  if (!shells.empty()) return shells;
-  std::string why = "select_flange: no flange in sight has two sheets of \"" + named + "\"";
+  if (!wanted.empty()) return wanted;
+  std::string why = who + ": no flange in sight has two sheets of \"" + *edit.between + "\"";
   for (const PartIndex part : flanges.without_thickness)
     if (std::find(parts.begin(), parts.end(), part) != parts.end())
       return fail("", why + "; " + part_id(model, part) + " has no thickness, so that \"gap\" must say how far apart sheets may be");
@@ -155,27 +156,33 @@ Result<Flanges> find_flanges(const Generation& generation, const FlangeWish& wis
   return found;
 }
 
-Result<Selection> flange_at(const Generation& generation, const SelectFlange& edit, const Progress& progress) {
+Result<std::vector<Flange>> flanges_wanted(const Generation& generation, const SelectFlange& edit, const std::string& who,
+                                           const Progress& progress) {
   const Model& model = generation.model;
   if (edit.at.has_value() == edit.between.has_value())
-    return fail(
-        "", std::string("select_flange needs either \"at\", a place on the flange, or \"between\", the parts whose flanges it selects") +
-                (edit.at ? "; both are given" : ""));
+    return fail("", who + " needs either \"at\", a place on the flange, or \"between\", the parts whose flanges it " +
+                        (who == "select_flange" ? "selects" : "welds") + (edit.at ? "; both are given" : ""));
   std::vector<PartIndex> parts;
   if (edit.between) {
     Result<select::Chosen> chosen = select::evaluate(model, *edit.between, select::EntityKind::part, generation.relations->names, progress);
     if (!chosen) return fail(chosen.error());
     parts = std::move(chosen->parts);
-  } else if (const Result<Place> place = place_of(generation, *edit.at); !place) {
+  } else if (const Result<Place> place = place_of(generation, *edit.at, who); !place) {
     return fail(place.error());  // before the search, which costs the model
   }
   const Result<Flanges> flanges = all_flanges(generation, edit.gap, edit.max_width, progress);
   if (!flanges) return fail(flanges.error());
-  Result<ShellSet> shells =
-      edit.at ? shells_at_place(generation, *flanges, *edit.at) : shells_between(model, *flanges, parts, *edit.between);
-  if (!shells) return fail(shells.error());
-  NodeSet nodes = nodes_of(model, *shells);
-  return Selection{std::move(nodes), std::move(*shells), select::EntityKind::element};
+  return edit.at ? flanges_at_place(generation, *flanges, *edit.at, who) : flanges_between(model, *flanges, parts, edit, who);
+}
+
+Result<Selection> flange_at(const Generation& generation, const SelectFlange& edit, const Progress& progress) {
+  const Result<std::vector<Flange>> flanges = flanges_wanted(generation, edit, "select_flange", progress);
+  if (!flanges) return fail(flanges.error());
+  ShellSet shells;
+  for (const Flange& flange : *flanges) shells.insert(shells.end(), flange.shells.begin(), flange.shells.end());
+  std::sort(shells.begin(), shells.end());
+  NodeSet nodes = nodes_of(generation.model, shells);
+  return Selection{std::move(nodes), std::move(shells), select::EntityKind::element};
 }
 
 }  // namespace prismesh::mesh::document

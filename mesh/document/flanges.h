@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/error.h"
 #include "base/progress.h"
@@ -21,6 +22,10 @@ struct FlangeWish {
 
 /// The flanges, the longest first. Errors: those of the expression, cancelled.
 Result<connections::Flanges> find_flanges(const Generation& generation, const FlangeWish& wish, const Progress& progress = {});
+
+/// The flange at the edit's place, or all flanges between its parts. `who` begins the errors: the edit's name. Errors: as flange_at.
+Result<std::vector<connections::Flange>> flanges_wanted(const Generation& generation, const SelectFlange& edit, const std::string& who,
+                                                        const Progress& progress = {});
 
 /// The shells of all sheets of the flange at the edit's place, or of all flanges between its parts. Errors: no such node or part, neither
 /// or both named, no flange there; cancelled.

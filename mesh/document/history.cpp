@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "mesh/document/branches.h"
+#include "mesh/document/deck_relations.h"
 #include "mesh/model/adjacency.h"
 #include "mesh/model/topology_change.h"
 
@@ -34,9 +35,22 @@ std::size_t own_bytes(const Model& before, const Model& next) {
     const TopologyChange& old = before.topology_change ? *before.topology_change : none;
     bytes +=
         own_bytes(old.node_origins, next.topology_change->node_origins) + own_bytes(old.shell_parents, next.topology_change->shell_parents);
+    add(next.topology_change->placed_nodes);
+    for (const auto& examples : next.topology_change->element_examples) add(examples);
+    for (const AddedPart& part : next.topology_change->added_parts) bytes += part.cards.size();
     add(next.topology_change->removed_nodes), add(next.topology_change->removed_shells), add(next.topology_change->reshaped_shells);
   }
+  for (std::size_t c = 0; c < next.elements.size(); ++c)
+    if (next.elements[c] && next.elements[c] != before.elements[c]) {
+      const ElementBlock& block = *next.elements[c];
+      add(block.id), add(block.part), add(block.first_node), add(block.nodes);
+    }
   return bytes;
+}
+
+std::size_t own_bytes(const DeckRelations& relations) {
+  return relations.element_uses.size() * sizeof(ElementUse) +
+         relations.dependents.on_sheets.size() * (sizeof(NodeOnSheet) + sizeof(std::uint32_t));
 }
 
 }  // namespace
@@ -53,6 +67,7 @@ std::size_t own_bytes(const Generation& before, const Generation& next) {
   bytes += own_bytes(before.node_marks, next.node_marks) + own_bytes(before.shell_marks, next.shell_marks);
   bytes += own_bytes(before.quality, next.quality);
   bytes += own_bytes(a, b);
+  if (before.relations != next.relations && next.relations) bytes += own_bytes(*next.relations);
   if (before.parts != next.parts) bytes += next.parts->size() * sizeof(PartState);
   return bytes;
 }

@@ -13,6 +13,7 @@
 #include "mesh/document/delta.h"
 #include "mesh/document/edit_json.h"
 #include "mesh/document/edit_kinds.h"
+#include "mesh/document/grow_relations.h"
 #include "mesh/document/history.h"
 #include "mesh/document/judge_parts.h"
 #include "mesh/document/restructure.h"
@@ -47,6 +48,7 @@ Result<std::shared_ptr<const Generation>> rebuilt(const Document& document, cons
   if (!moved) return fail(moved.error());
   std::shared_ptr<const Judging> judging = std::exchange(next->judging, document.current().judging);
   settle_growth(document.current(), *moved, *next);
+  grow_relations(document.current().model, *next);
   if (judging != next->judging) judge_by(std::move(judging), *next);
   if (reshapes(record.intent)) next->surface = std::make_shared<const Model>(next->model);
   next->number = document.next_number;

@@ -21,7 +21,8 @@ void judge_by(std::shared_ptr<const Judging> judging, Generation& generation) {
   const Judging& now = *generation.judging;
   const Model& model = generation.model;
   std::vector<bool> is_changed(now.parts.size(), false);
-  for (std::size_t p = 0; p < now.parts.size(); ++p) is_changed[p] = !are_judged_alike(*before, now, PartIndex(p));
+  for (std::size_t p = 0; p < now.parts.size(); ++p)
+    is_changed[p] = p >= before->parts.size() || !are_judged_alike(*before, now, PartIndex(p));
   const bool others_changed = !are_judged_alike(*before, now, PartIndex());
   ShellSet shells;
   for (std::size_t s = 0; s < model.shell_count(); ++s) {

@@ -12,6 +12,7 @@
 #include "mesh/document/branches.h"
 #include "mesh/document/history.h"
 #include "mesh/document/part_marks.h"
+#include "mesh/document/weld_places.h"
 #include "mesh/model/node_set.h"
 #include "mesh/model/topology_change.h"
 
@@ -33,8 +34,9 @@ Result<Prepared> prepare_step(const Document& document, bool back) {
   const NodeSet moved = moved_nodes(from, to);
   prepared.report.nodes_moved = moved.size();
   if (!moved.empty()) prepared.report.largest_move = largest_move(from, to, moved);
-  prepared.report.elements_added = (back ? changes.removed_shells : changes.added_shells).size();
-  prepared.report.elements_removed = (back ? changes.added_shells : changes.removed_shells).size();
+  const std::size_t others = changes.other_elements();
+  prepared.report.elements_added = back ? changes.removed_shells.size() : changes.added_shells.size() + others;
+  prepared.report.elements_removed = back ? changes.added_shells.size() + others : changes.removed_shells.size();
   prepared.report.notes.push_back((back ? "undid " : "did again: ") + (back ? document.current() : *prepared.next).made_by);
   return prepared;
 }
@@ -104,6 +106,9 @@ Result<Prepared> prepare_push(const Document& document, const E& edit, std::stri
       done.stop_at = StopPoint{stopped->attempt, stopped->steps};
       prepared.as_done = std::move(done);
     }
+  if constexpr (std::is_same_v<E, Weld>)
+    if (edit.points_file)
+      if (Result<Weld> whole = with_points(document, edit)) prepared.as_done = std::move(*whole);
   if constexpr (std::is_same_v<E, Repair> || std::is_same_v<E, Relax>) say_hidden(current, *next, prepared.report);
   next->number = document.next_number;
   next->made_by = edit_name;

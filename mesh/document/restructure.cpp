@@ -40,6 +40,7 @@ NodeSet corners_of_changed(const Model& before, const Model& after, const Change
 void carry_selection(const Changes& changes, Generation& next) {
   const auto node_selected = [&](NodeIndex node) { return (next.node_marks[node.value] & kSelected) != 0; };
   for (const NodeIndex node : changes.added_nodes) {
+    if (placed_node(next.model, node) != nullptr) continue;
     const NodeOrigin& origin = origin_of(next.model, node);
     bool all = true;
     for (int p = 0; p < origin.count(); ++p) all = all && node_selected(origin.parent[static_cast<std::size_t>(p)]);
@@ -140,6 +141,14 @@ void settle_growth(const Generation& before, const NodeSet& moved, Generation& n
   weigh_again(before, changes, touched, next);
 }
 
+void note_missing_files(const Document& document, const Changes& changes, EditReport& report) {
+  const std::vector<std::string>& missing = document.deck->missing_files;
+  if (!missing.empty() && changes.added_nodes.size() + changes.added_shells.size() + changes.other_elements() > 0)
+    report.notes.push_back(
+        "the include file " + missing.front() + (missing.size() > 1 ? " and " + counted(missing.size() - 1, "other") : std::string()) +
+        (missing.size() > 1 ? " aren't" : " isn't") + " there; the new nodes and elements may have numbers that it uses");
+}
+
 Result<void> restructure(const Document& document, const repair::Restructuring& change, Generation& next, EditReport& report) {
   const Generation& before = document.current();
   if (const Result<void> done = carry_out(document, change, next.model); !done) return done;
@@ -152,11 +161,7 @@ Result<void> restructure(const Document& document, const repair::Restructuring& 
   report.largest_move = largest_move(before.model, next.model, moved);
   report.elements_added = changes.added_shells.size();
   report.elements_removed = changes.removed_shells.size();
-  const std::vector<std::string>& missing = document.deck->missing_files;
-  if (!missing.empty() && changes.added_nodes.size() + changes.added_shells.size() > 0)
-    report.notes.push_back(
-        "the include file " + missing.front() + (missing.size() > 1 ? " and " + counted(missing.size() - 1, "other") : std::string()) +
-        (missing.size() > 1 ? " aren't" : " isn't") + " there; the new nodes and elements may have numbers that it uses");
+  note_missing_files(document, changes, report);
   return {};
 }
 

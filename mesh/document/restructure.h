@@ -4,6 +4,7 @@
 
 #include "mesh/document/document.h"
 #include "mesh/document/edit_report.h"
+#include "mesh/model/topology_change.h"
 #include "mesh/repair/restructuring.h"
 #include "mesh/repair/rules.h"
 
@@ -21,6 +22,9 @@ Result<void> restructure(const Document& document, const repair::Restructuring& 
 /// The second half of `restructure`, for a `next` whose model was changed otherwise: updates adjacency, quality, clusters and weight, and
 /// resizes the marks. `moved`: nodes of both whose positions differ, ascending.
 void settle_growth(const Generation& before, const NodeSet& moved, Generation& next);
+
+/// Says that new nodes and elements may have numbers that a missing include uses.
+void note_missing_files(const Document& document, const Changes& changes, EditReport& report);
 
 /// The first half of `restructure`: changes the model alone. Errors: as restructure.
 Result<void> carry_out(const Document& document, const repair::Restructuring& change, Model& model);

@@ -12,6 +12,7 @@
 #include <Eigen/Core>
 
 #include "mesh/model/chunked_array.h"
+#include "mesh/model/element_class.h"
 #include "mesh/model/id_index.h"
 #include "mesh/model/index.h"
 
@@ -36,11 +37,6 @@ struct MidsideNodes {
   ShellIndex shell;
   std::array<NodeIndex, 4> node;  ///< between corner i and i+1; invalid where the element has none
 };
-
-/// Classes of elements. Elements other than shells are shown and their nodes count, but they aren't edited themselves.
-enum class ElementClass : std::uint8_t { shell, beam, solid, tshell, discrete, mass, sph, other };
-inline constexpr int kElementClassCount = 8;
-std::string_view name(ElementClass element_class);
 
 /// All elements of one class other than shells: the nodes of element e are nodes[first_node[e] .. first_node[e+1]).
 struct ElementBlock {

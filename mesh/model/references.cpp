@@ -10,6 +10,20 @@ auto order(const Reference& r) { return std::make_tuple(r.referred, r.first, r.r
 
 }  // namespace
 
+Referred referred(ElementClass element_class) {
+  switch (element_class) {
+    case ElementClass::shell: return Referred::shell;
+    case ElementClass::beam: return Referred::beam;
+    case ElementClass::solid: return Referred::solid;
+    case ElementClass::tshell: return Referred::tshell;
+    case ElementClass::discrete: return Referred::discrete;
+    case ElementClass::mass: return Referred::mass;
+    case ElementClass::sph: return Referred::sph;
+    case ElementClass::other: break;
+  }
+  return Referred::other;
+}
+
 std::string_view name(Referred referred) {
   switch (referred) {
     case Referred::node: return "node";

@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "mesh/model/element_class.h"
+
 namespace prismesh::mesh {
 
 /// The class of entity that a number names. Ids are unique within a class only. The cards that use a set name the set; the set names its
@@ -38,6 +40,9 @@ enum class Referred : std::uint8_t {
 };
 inline constexpr int kReferredCount = 20;
 std::string_view name(Referred referred);  ///< "node", "shell", "node set", ...
+
+/// The numbers of a class of elements.
+Referred referred(ElementClass element_class);
 
 constexpr bool is_element(Referred referred) { return referred >= Referred::shell && referred <= Referred::any_element; }
 constexpr bool is_set(Referred referred) { return referred >= Referred::node_set; }

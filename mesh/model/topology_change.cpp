@@ -1,6 +1,8 @@
 #include "mesh/model/topology_change.h"
 
 #include <algorithm>
+#include <memory>
+#include <utility>
 
 namespace prismesh::mesh {
 
@@ -14,6 +16,9 @@ TopologyChange& own_topology_change(Model& model) {
     if (!model.topology_change) {
       topology_change->deck_nodes = model.node_count();
       topology_change->deck_shells = model.shell_count();
+      for (std::size_t c = 0; c < model.elements.size(); ++c)
+        if (model.elements[c]) topology_change->deck_elements[c] = model.elements[c]->size();
+      topology_change->deck_parts = model.parts ? model.parts->size() : 0;
     }
     model.topology_change = std::move(topology_change);
   }
@@ -80,6 +85,39 @@ NodeIndex add_node(Model& model, std::int64_t id, const Vec3& position, const No
   return node;
 }
 
+NodeIndex add_placed_node(Model& model, std::int64_t id, const Vec3& position, const NodeOrigin& origin, bool joins_sets) {
+  const NodeIndex node = add_node(model, id, position, origin);
+  own_topology_change(model).placed_nodes.push_back({node, joins_sets ? 1u : 0u});
+  return node;
+}
+
+std::uint32_t add_element(Model& model, ElementClass element_class, std::int64_t id, PartIndex part, std::span<const NodeIndex> nodes,
+                          std::uint32_t example) {
+  TopologyChange& topology_change = own_topology_change(model);
+  const auto c = static_cast<std::size_t>(element_class);
+  std::shared_ptr<const ElementBlock>& shared = model.elements[c];
+  // The deck's own block may have been created as a constant.
+  if (!shared || shared.use_count() > 1 || topology_change.element_examples[c].empty())
+    shared = shared ? std::make_shared<ElementBlock>(*shared) : std::make_shared<ElementBlock>();
+  // the only owner, and the object wasn't created as a constant
+  auto& block = const_cast<ElementBlock&>(*shared);
+  block.id.push_back(id);
+  block.part.push_back(part);
+  block.nodes.insert(block.nodes.end(), nodes.begin(), nodes.end());
+  block.first_node.push_back(static_cast<std::uint32_t>(block.nodes.size()));
+  topology_change.element_examples[c].push_back(example);
+  return static_cast<std::uint32_t>(block.size() - 1);
+}
+
+PartIndex add_part(Model& model, Part part, AddedPart added) {
+  own_topology_change(model).added_parts.push_back(std::move(added));
+  auto parts = model.parts ? std::make_shared<std::vector<Part>>(*model.parts) : std::make_shared<std::vector<Part>>();
+  parts->push_back(std::move(part));
+  const PartIndex index(parts->size() - 1);
+  model.parts = std::move(parts);
+  return index;
+}
+
 ShellIndex add_shell(Model& model, std::int64_t id, const ShellNodes& nodes, ShellIndex parent) {
   TopologyChange& topology_change = own_topology_change(model);
   const ShellIndex shell(model.shell_count());
@@ -126,6 +164,13 @@ std::size_t live_shells(const Model& model) {
 bool is_added(const Model& model, NodeIndex node) { return model.topology_change && node.value >= model.topology_change->deck_nodes; }
 bool is_added(const Model& model, ShellIndex shell) { return model.topology_change && shell.value >= model.topology_change->deck_shells; }
 
+const PlacedNode* placed_node(const Model& model, NodeIndex node) {
+  if (!is_added(model, node)) return nullptr;
+  const std::vector<PlacedNode>& placed = model.topology_change->placed_nodes;
+  const auto at = std::lower_bound(placed.begin(), placed.end(), node, [](const PlacedNode& each, NodeIndex n) { return each.node < n; });
+  return at != placed.end() && at->node == node ? &*at : nullptr;
+}
+
 const NodeOrigin& origin_of(const Model& model, NodeIndex node) {
   return model.topology_change->node_origins[node.value - model.topology_change->deck_nodes];
 }
@@ -150,6 +195,12 @@ Changes changes_between(const Model& before, const Model& after) {
     return s.value >= before.shell_count() || before.is_removed(s) || after.is_removed(s) || before.shell(s) == after.shell(s);
   });
   changes.reshaped_shells = sorted_unique(std::move(reshaped));
+  for (std::size_t c = 0; c < after.elements.size(); ++c) {
+    const std::size_t from = before.elements[c] ? before.elements[c]->size() : 0, to = after.elements[c] ? after.elements[c]->size() : 0;
+    for (std::size_t e = from; e < to; ++e) changes.added_elements[c].push_back(static_cast<std::uint32_t>(e));
+  }
+  for (std::size_t p = before.parts ? before.parts->size() : 0; after.parts && p < after.parts->size(); ++p)
+    changes.added_parts.emplace_back(p);
   return changes;
 }
 

@@ -46,13 +46,26 @@ void check(const Generation& generation) {
   for (std::size_t s = 0; s < model.shell_count(); ++s)
     if (!model.is_removed(mesh::ShellIndex(s)))
       for (const mesh::NodeIndex node : model.shell(mesh::ShellIndex(s)).node) require(node.value < model.node_count());
+  for (const auto& block : model.elements) {
+    if (!block) continue;
+    require(block->first_node.size() == block->size() + 1 && block->first_node.back() == block->nodes.size());
+    for (const mesh::NodeIndex node : block->nodes) require(node.value < model.node_count());
+    for (const mesh::PartIndex part : block->part) require(!part.valid() || part.value < model.parts->size());
+  }
+  require(generation.parts->size() == model.parts->size() && generation.judging->parts.size() == model.parts->size());
   static_cast<void>(mesh::build_adjacency(model));
 }
 
 /// Whether two models have the same entries, those that came and went included.
 void require_same(const mesh::Model& a, const mesh::Model& b) {
   require(a.node_count() == b.node_count() && a.shell_count() == b.shell_count());
-  require(mesh::moved_nodes(a, b).empty() && mesh::changes_between(a, b).empty());
+  require(mesh::moved_nodes(a, b).empty() && a.parts->size() == b.parts->size());
+  require(!a.topology_change || !b.topology_change ||
+          (a.topology_change->placed_nodes == b.topology_change->placed_nodes &&
+           a.topology_change->added_parts == b.topology_change->added_parts &&
+           a.topology_change->element_examples == b.topology_change->element_examples));
+  for (std::size_t c = 0; c < a.elements.size(); ++c)
+    if (a.elements[c]) require(a.elements[c]->id == b.elements[c]->id && a.elements[c]->nodes == b.elements[c]->nodes);
   for (std::size_t n = 0; n < a.node_count(); ++n) {
     const mesh::NodeIndex node(n);
     require(a.node_ids[n] == b.node_ids[n] && a.is_removed(node) == b.is_removed(node));

@@ -1,5 +1,6 @@
 // New text, and changes of a model, as hostile or damaged bytes: refused, or sound enough to be used.
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
@@ -24,7 +25,7 @@ constexpr const char* kDeck =
     "*KEYWORD\n*NODE\n"
     "       1             0.0             0.0             0.0\n       2             1.0             0.0             0.0\n"
     "       3             1.0             1.0             0.0\n       4             0.0             1.0             0.0\n"
-    "*ELEMENT_SHELL\n       1       7       1       2       3       4\n*END\n";
+    "*ELEMENT_SHELL\n       1       7       1       2       3       4\n*ELEMENT_BEAM\n       1       7       1       3\n*END\n";
 
 const mesh::deck::OpenedDeck& deck() {
   static const mesh::deck::OpenedDeck opened = [] {
@@ -45,6 +46,13 @@ mesh::Model edited() {
   const mesh::NodeIndex middle = mesh::add_node(model, 9, {0.5, 0, 0}, mesh::edge_origin(mesh::NodeIndex(0), mesh::NodeIndex(1)));
   mesh::add_shell(model, 2, {{middle, mesh::NodeIndex(1), mesh::NodeIndex(2), mesh::NodeIndex(2)}}, mesh::ShellIndex(0));
   mesh::set_shell_nodes(model, mesh::ShellIndex(0), {{mesh::NodeIndex(0), middle, mesh::NodeIndex(2), mesh::NodeIndex(3)}});
+  const mesh::NodeIndex low = mesh::add_placed_node(model, 10, {0.2, 0.2, 0}, mesh::edge_origin(mesh::NodeIndex(0), middle), false);
+  const mesh::NodeIndex high = mesh::add_placed_node(model, 11, {0.2, 0.2, 1}, mesh::edge_origin(mesh::NodeIndex(0), middle), true);
+  mesh::Part part;
+  part.id = 90;
+  mesh::add_element(model, mesh::ElementClass::beam, 5, mesh::add_part(model, part, {"*PART\nwelds\n"}), std::array{low, high},
+                    mesh::kNoExample);
+  mesh::add_element(model, mesh::ElementClass::beam, 6, mesh::PartIndex(0), std::array{low, high}, 0);
   return model;
 }
 
@@ -67,6 +75,11 @@ void try_change(std::span<const std::byte> bytes) {
     if (model->is_removed(mesh::ShellIndex(s))) continue;
     for (const mesh::NodeIndex node : model->shell(mesh::ShellIndex(s)).node) require(node.value < model->node_count());
     require(mesh::deck_ancestor(*model, mesh::ShellIndex(s)).value < deck().model.shell_count());
+  }
+  for (const auto& block : model->elements) {
+    if (!block) continue;
+    for (const mesh::NodeIndex node : block->nodes) require(node.value < model->node_count());
+    for (const mesh::PartIndex part : block->part) require(!part.valid() || part.value < model->parts->size());
   }
   (void)mesh::deck::text_changes(*deck().deck, deck().model, *model);
 }

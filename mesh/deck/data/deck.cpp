@@ -55,6 +55,22 @@ const CardRun& run_of(const std::vector<CardRun>& runs, std::uint32_t index) {
 
 }  // namespace
 
+std::optional<IdOffsets> Deck::offsets_in(std::uint32_t file) const {
+  const auto shifted = [](const IdOffsets& offsets) { return !(offsets == IdOffsets()); };
+  if (std::none_of(id_offsets.begin(), id_offsets.end(), shifted)) return IdOffsets();
+  std::optional<IdOffsets> found;
+  for (const auto* runs : {&node_runs, &shell_runs})
+    for (const CardRun& run : *runs) {
+      if (run.file != file) continue;
+      const IdOffsets offsets = offsets_of(run);
+      if (found && !(*found == offsets)) return std::nullopt;
+      found = offsets;
+    }
+  // The main file is never shifted.
+  if (!found && file == 0) return IdOffsets();
+  return found;
+}
+
 const CardRun& Deck::run_of(NodeIndex node) const { return deck::run_of(node_runs, node.value); }
 const CardRun& Deck::run_of(ShellIndex shell) const { return deck::run_of(shell_runs, shell.value); }
 

@@ -159,6 +159,8 @@ struct Deck {
   const SourceFile& file_of(NodeIndex node) const { return files[run_of(node).file]; }
   /// What is added to the ids on its cards to get those of the model.
   IdOffsets offsets_of(const CardRun& run) const { return run.frame < id_offsets.size() ? id_offsets[run.frame] : IdOffsets(); }
+  /// What an include adds to the ids of a file's text; nullopt: it differs from place to place, or the file has no mesh to tell it by.
+  std::optional<IdOffsets> offsets_in(std::uint32_t file) const;
 };
 
 /// Files that are read in place of others, by the others' canonical_name.

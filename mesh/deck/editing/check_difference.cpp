@@ -54,7 +54,7 @@ Result<void> check_nodes_of(const ModelDifference& difference, ShellIndex shell)
 
 Result<void> check_other_elements(const ModelDifference& difference) {
   for (int c = 0; c < kElementClassCount; ++c) {
-    const auto& block = difference.original.elements[static_cast<std::size_t>(c)];
+    const auto& block = difference.model.elements[static_cast<std::size_t>(c)];
     if (!block) continue;
     for (std::size_t e = 0; e < block->size(); ++e)
       for (std::uint32_t n = block->first_node[e]; n < block->first_node[e + 1]; ++n)

@@ -19,12 +19,16 @@ void remove_card(TextEdits& edits, const DeckCard& card, std::size_t end) {
 }
 
 void insert_after_card(TextEdits& edits, const DeckCard& card, std::size_t end, const std::string& text) {
-  const std::string eol(line_end(card.text, end));
-  const std::size_t newline = card.text.find('\n', end);
+  insert_lines_behind(edits, {card.run.file, card.text}, end, text);
+}
+
+void insert_lines_behind(TextEdits& edits, const FileText& file, std::size_t end, const std::string& lines) {
+  const std::string eol(line_end(file.text, end));
+  const std::size_t newline = file.text.find('\n', end);
   if (newline == std::string_view::npos)
-    edits.replacements.push_back({card.run.file, {card.text.size(), 0, eol + text}});
+    edits.replacements.push_back({file.file, {file.text.size(), 0, eol + lines}});
   else
-    edits.replacements.push_back({card.run.file, {newline + 1, 0, text + eol}});
+    edits.replacements.push_back({file.file, {newline + 1, 0, lines + eol}});
 }
 
 void add_to_new_block(TextEdits& edits, const DeckCard& beside, const CardWriter::NewBlock& block, const std::string& text) {

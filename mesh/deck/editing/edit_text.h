@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/error.h"
@@ -22,6 +24,14 @@ void remove_card(TextEdits& edits, const DeckCard& card, std::size_t end);
 
 /// Inserts lines behind the card. They end as the card's last line does.
 void insert_after_card(TextEdits& edits, const DeckCard& card, std::size_t end, const std::string& text);
+
+/// A file by its index and its text.
+struct FileText {
+  std::uint32_t file = 0;
+  std::string_view text;
+};
+/// Inserts lines behind the line whose last character is before `end`. They end as it does.
+void insert_lines_behind(TextEdits& edits, const FileText& file, std::size_t end, const std::string& lines);
 
 /// Appends a card to a new block. The block's lines end as those of the card `beside`.
 void add_to_new_block(TextEdits& edits, const DeckCard& beside, const CardWriter::NewBlock& block, const std::string& text);

@@ -23,7 +23,7 @@ namespace {
 struct NewEntity {
   Referred referred = Referred::node;
   std::int64_t id = 0;
-  std::vector<std::int64_t> parents;  ///< ids; a shell has one
+  std::vector<std::int64_t> parents;  ///< ids; a shell has one; none: it joins no sets
   bool triangle = false;              ///< a shell with three corners
 };
 
@@ -45,6 +45,7 @@ std::vector<std::uint32_t>::const_iterator set_among(const References& reference
 /// Sets that name all parents, each once; of a set on several cards, the first that names the first parent.
 std::vector<std::uint32_t> sets_of_all_parents(const References& references, const NewEntity& entity) {
   std::vector<std::uint32_t> cards;
+  if (entity.parents.empty()) return {};
   for (const Reference& reference : references.naming(entity.referred, entity.parents.front()))
     if (reference.role == ReferenceRole::list || reference.role == ReferenceRole::range) cards.push_back(reference.referrer);
   std::sort(cards.begin(), cards.end());
@@ -60,7 +61,7 @@ std::vector<std::uint32_t> sets_of_all_parents(const References& references, con
 Result<void> join_set(const ModelDifference& difference, std::uint32_t set, const NewEntity& entity, ReferencePlan& plan) {
   const Deck& deck = difference.deck;
   const Referrer& card = deck.references->referrers()[set];
-  if (entity.referred == Referred::node || difference.writer.can_name(card, entity.triangle)) {
+  if (entity.referred != Referred::shell || difference.writer.can_name(card, entity.triangle)) {
     plan.sets[{set, entity.referred == Referred::node}].joining.push_back(entity.id);
     return {};
   }
@@ -158,8 +159,29 @@ Result<void> copy_singles(const ModelDifference& difference, const NewEntity& no
 
 // --- nodes and shells ---
 
+/// A node that lies between no others has no constraints of others, and joins sets only where it is used as others are.
+Result<void> plan_placed_node(const ModelDifference& difference, const PlacedNode& placed, ReferencePlan& plan) {
+  const Model& model = difference.model;
+  NewEntity entity{Referred::node, model.node_ids[placed.node.value], {}};
+  if (placed.joins_sets != 0)
+    for (const NodeIndex ancestor : deck_ancestors(model, placed.node)) entity.parents.push_back(model.node_ids[ancestor.value]);
+  return join_sets(difference, entity, plan);
+}
+
+/// An element that is no shell joins the sets of its example.
+Result<void> plan_added_element(const ModelDifference& difference, ElementClass element_class, std::uint32_t element, ReferencePlan& plan) {
+  const Model& model = difference.model;
+  const auto c = static_cast<std::size_t>(element_class);
+  const TopologyChange& change = *model.topology_change;
+  const std::uint32_t example = change.element_examples[c][element - change.deck_elements[c]];
+  NewEntity entity{referred(element_class), model.elements[c]->id[element], {}};
+  if (example != kNoExample) entity.parents.push_back(model.elements[c]->id[example]);
+  return join_sets(difference, entity, plan);
+}
+
 Result<void> plan_added_node(const ModelDifference& difference, NodeIndex node, DivisionCheck& division, ReferencePlan& plan) {
   const Model& model = difference.model;
+  if (const PlacedNode* placed = placed_node(model, node)) return plan_placed_node(difference, *placed, plan);
   NewEntity entity{Referred::node, model.node_ids[node.value], {}};
   for (const NodeIndex ancestor : deck_ancestors(model, node)) entity.parents.push_back(model.node_ids[ancestor.value]);
   if (Result<void> may = as_refusal(division.may_be_between(entity.parents)); !may) return may;
@@ -211,6 +233,9 @@ Result<void> plan_inheritance(const ModelDifference& difference, const ShellFami
   DivisionCheck division(difference.deck);
   for (const NodeIndex node : difference.changes.added_nodes)
     if (Result<void> done = plan_added_node(difference, node, division, plan); !done) return done;
+  for (std::size_t c = 1; c < difference.changes.added_elements.size(); ++c)
+    for (const std::uint32_t element : difference.changes.added_elements[c])
+      if (Result<void> done = plan_added_element(difference, static_cast<ElementClass>(c), element, plan); !done) return done;
   for (const auto& [ancestor, children] : families)
     if (Result<void> done = plan_divided_shell(difference, ancestor, children, division, plan); !done) return done;
   for (const ShellIndex shell : difference.changes.reshaped_shells)

@@ -5,6 +5,7 @@
 
 #include "base/letter_case.h"
 #include "mesh/deck/editing/ancestors.h"
+#include "mesh/deck/editing/element_place.h"
 #include "mesh/deck/formats/formats.h"
 #include "mesh/deck/text/number.h"
 
@@ -89,23 +90,55 @@ NewIds::NewIds(const Deck& deck, const Model& model) : deck_(deck), model_(model
         std::min(largest_in_shells_, writer_->largest_shell_id(run.style) + std::min<std::int64_t>(0, deck.offsets_of(run).node));
 }
 
-Result<std::int64_t> NewIds::node(const NodeOrigin& origin) {
+Result<NewIds::IdSearch> NewIds::node_search(const NodeOrigin& origin) const {
   const NodeIndex example = example_node(model_, origin);
   if (!example.valid())
     return fail(deck_.files[0].path.string(),
                 "a new node would have to stand in an include that is used twice, or beside nodes that have no cards of their own");
   const CardRun& run = deck_.run_of(example);
   IdSearch search{Referred::node, {}, run.file, deck_.last_ids[run.file].node, 1, 0};
-  for (int p = 0; p < origin.count(); ++p)
-    for (const NodeIndex ancestor : deck_ancestors(model_, origin.parent[static_cast<std::size_t>(p)]))
-      search.parents.push_back(model_.node_ids[ancestor.value]);
-  std::sort(search.parents.begin(), search.parents.end());
-  search.parents.erase(std::unique(search.parents.begin(), search.parents.end()), search.parents.end());
   const std::int64_t offset = deck_.offsets_of(run).node;
   search.min = std::max<std::int64_t>(1, offset + 1);
   // Shells have narrower fields for node ids than nodes in some layouts, and in some files.
   search.max = std::min(writer_->largest_node_id(run.style) + std::min<std::int64_t>(offset, 0), largest_in_shells_);
-  return find(search);
+  return search;
+}
+
+Result<std::int64_t> NewIds::placed_node(const NodeOrigin& origin, bool joins_sets) {
+  if (joins_sets) return node(origin);
+  const Result<IdSearch> search = node_search(origin);
+  return search ? find(*search) : fail(search.error());
+}
+
+Result<std::int64_t> NewIds::node(const NodeOrigin& origin) {
+  Result<IdSearch> search = node_search(origin);
+  if (!search) return fail(search.error());
+  for (int p = 0; p < origin.count(); ++p)
+    for (const NodeIndex ancestor : deck_ancestors(model_, origin.parent[static_cast<std::size_t>(p)]))
+      search->parents.push_back(model_.node_ids[ancestor.value]);
+  std::sort(search->parents.begin(), search->parents.end());
+  search->parents.erase(std::unique(search->parents.begin(), search->parents.end()), search->parents.end());
+  return find(*search);
+}
+
+Result<std::int64_t> NewIds::element(ElementClass element_class, std::uint32_t example) {
+  const auto known = of_examples_.find({element_class, example});
+  if (known != of_examples_.end()) return find(known->second);
+  IdSearch search{referred(element_class), {}, 0, 0, 1, writer_->largest_shell_id(0)};
+  const auto& block = model_.elements[static_cast<std::size_t>(element_class)];
+  if (example == kNoExample) {
+    if (block && !block->id.empty()) search.last_in_file = *std::max_element(block->id.begin(), block->id.end());
+  } else {
+    const Result<ElementPlace> place = place_of_element(deck_, model_, *writer_, element_class, example);
+    if (!place) return fail(place.error());
+    const std::int64_t offset = deck_.offsets_in(place->file).value_or(IdOffsets()).element;
+    search.parents = {block->id[example]};
+    search.file = place->file;
+    search.last_in_file = place->last_in_file + offset;
+    search.min = std::max<std::int64_t>(1, offset + 1);
+    search.max = writer_->largest_shell_id(place->style) + std::min<std::int64_t>(offset, 0);
+  }
+  return find(of_examples_.emplace(std::pair(element_class, example), std::move(search)).first->second);
 }
 
 Result<std::int64_t> NewIds::shell(ShellIndex parent) {
@@ -124,7 +157,9 @@ Result<std::int64_t> NewIds::find(const IdSearch& search) {
   // The ids within all ranges that hold all parents: nothing has to be written for a new one to belong to these.
   const References& references = *deck_.references;
   std::optional<std::pair<std::int64_t, std::int64_t>> within;
-  for (const Reference& range : references.naming(search.referred, search.parents.front()))
+  const std::vector<Reference> naming =
+      search.parents.empty() ? std::vector<Reference>() : references.naming(search.referred, search.parents.front());
+  for (const Reference& range : naming)
     if (range.role == ReferenceRole::range && range.step == 1 &&
         std::all_of(search.parents.begin(), search.parents.end(), [&](std::int64_t p) { return range.names(p); }))
       within = within ? std::pair(std::max(within->first, range.first), std::min(within->second, range.last))
@@ -184,9 +219,10 @@ std::int64_t NewIds::beyond_taken(Referred referred, std::int64_t id) {
 /// Ids of removed ones aren't given again: unread text may still name them.
 bool NewIds::was_removed(Referred referred, std::int64_t id) {
   if (!model_.topology_change) return false;
-  RemovedIds& removed = removed_[referred];
   const TopologyChange& topology_change = *model_.topology_change;
+  if (referred != Referred::node && referred != Referred::shell) return false;
   const std::size_t count = referred == Referred::node ? topology_change.removed_nodes.size() : topology_change.removed_shells.size();
+  RemovedIds& removed = removed_[referred];
   if (removed.seen != count) {
     removed.seen = count;
     removed.ids.clear();
@@ -201,7 +237,8 @@ bool NewIds::was_removed(Referred referred, std::int64_t id) {
 
 std::int64_t NewIds::beyond_references(const IdSearch& search, std::int64_t id) const {
   for (const Reference& reference : deck_.references->naming(search.referred, id)) {
-    if (reference.role == ReferenceRole::range && all_named_by(*deck_.references, search.referred, search.parents, reference.referrer))
+    if (reference.role == ReferenceRole::range && !search.parents.empty() &&
+        all_named_by(*deck_.references, search.referred, search.parents, reference.referrer))
       continue;
     return beyond(reference, id);
   }

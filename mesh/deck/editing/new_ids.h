@@ -1,4 +1,4 @@
-// Chooses ids for nodes and shells that an edit adds.
+// Chooses ids for nodes and elements that an edit adds.
 #pragma once
 
 #include <cstdint>
@@ -30,6 +30,10 @@ class NewIds {
   /// Errors: no id is left (with the file and what holds the others), or no card of the deck can be the new card's example.
   Result<std::int64_t> node(const NodeOrigin& origin);
   Result<std::int64_t> shell(ShellIndex parent);
+  /// For a node that lies between no others, with a card like those of its origin. `joins_sets`: as PlacedNode.
+  Result<std::int64_t> placed_node(const NodeOrigin& origin, bool joins_sets);
+  /// For an element that is no shell. `example`: as TopologyChange::element_examples.
+  Result<std::int64_t> element(ElementClass element_class, std::uint32_t example);
 
  private:
   struct IdSearch {
@@ -40,6 +44,8 @@ class NewIds {
     std::int64_t min = 1;
     std::int64_t max = 0;
   };
+  /// Without parents. Errors: as node.
+  Result<IdSearch> node_search(const NodeOrigin& origin) const;
   Result<std::int64_t> find(const IdSearch& search);
   std::optional<std::int64_t> first_free(const IdSearch& search, std::int64_t from, std::int64_t to);
   std::int64_t beyond_taken(Referred referred, std::int64_t id);
@@ -62,6 +68,7 @@ class NewIds {
     std::vector<std::int64_t> ids;  ///< ascending
   };
   std::map<Referred, RemovedIds> removed_;
+  std::map<std::pair<ElementClass, std::uint32_t>, IdSearch> of_examples_;  ///< how elements like an example are numbered
 };
 
 }  // namespace prismesh::mesh::deck

@@ -1,6 +1,5 @@
 #include "mesh/deck/editing/referrer_text.h"
 
-#include <algorithm>
 #include <optional>
 
 #include "mesh/deck/editing/names.h"
@@ -9,26 +8,9 @@
 namespace prismesh::mesh::deck {
 namespace {
 
-/// What an include adds to the ids of a file's text; nullopt: it differs from place to place, or the file has no mesh to tell it by.
-std::optional<IdOffsets> id_offsets_in(const Deck& deck, std::uint32_t file) {
-  const auto shifted = [](const IdOffsets& offsets) { return !(offsets == IdOffsets()); };
-  if (std::none_of(deck.id_offsets.begin(), deck.id_offsets.end(), shifted)) return IdOffsets();
-  std::optional<IdOffsets> found;
-  for (const auto* runs : {&deck.node_runs, &deck.shell_runs})
-    for (const CardRun& run : *runs) {
-      if (run.file != file) continue;
-      const IdOffsets offsets = deck.offsets_of(run);
-      if (found && !(*found == offsets)) return std::nullopt;
-      found = offsets;
-    }
-  // The main file is never shifted.
-  if (!found && file == 0) return IdOffsets();
-  return found;
-}
-
-/// What the model's ids are more than those that the card gives; nullopt: as id_offsets_in.
+/// What the model's ids are more than those that the card gives; nullopt: as Deck::offsets_in.
 std::optional<IdOffsets> id_offsets_of(const ModelDifference& difference, const Referrer& card) {
-  return difference.writer.shifts_whole_files() ? id_offsets_in(difference.deck, card.file) : IdOffsets();
+  return difference.writer.shifts_whole_files() ? difference.deck.offsets_in(card.file) : IdOffsets();
 }
 
 std::int64_t offset_of(const ModelDifference& difference, Referred referred, const Referrer& card) {

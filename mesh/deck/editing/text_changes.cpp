@@ -8,6 +8,7 @@
 #include "mesh/deck/editing/edit_text.h"
 #include "mesh/deck/editing/model_difference.h"
 #include "mesh/deck/editing/reference_changes.h"
+#include "mesh/deck/editing/write_elements.h"
 #include "mesh/deck/editing/write_nodes.h"
 #include "mesh/deck/editing/write_shells.h"
 #include "mesh/deck/formats/formats.h"
@@ -17,7 +18,8 @@ namespace {
 
 std::size_t cards_to_write(const ModelDifference& difference) {
   const Changes& changes = difference.changes;
-  return difference.moved.size() + changes.added_nodes.size() + changes.reshaped_shells.size() + changes.added_shells.size();
+  return difference.moved.size() + changes.added_nodes.size() + changes.reshaped_shells.size() + changes.added_shells.size() +
+         changes.other_elements();
 }
 
 Result<TextChanges> text_changes_of(const ModelDifference& difference, const Progress& progress) {
@@ -27,6 +29,7 @@ Result<TextChanges> text_changes_of(const ModelDifference& difference, const Pro
   CardProgress card_progress(progress, cards_to_write(difference));
   if (Result<void> done = write_nodes(difference, card_progress, edits); !done) return fail(done.error());
   if (Result<void> done = write_shells(difference, card_progress, edits); !done) return fail(done.error());
+  if (Result<void> done = write_elements(difference, card_progress, edits); !done) return fail(done.error());
   insert_new_blocks(edits, difference.deck);
 
   TextChanges changes;

@@ -29,7 +29,8 @@ struct CardCounts {
   std::size_t shells_changed = 0;
   std::size_t shells_added = 0;
   std::size_t shells_removed = 0;
-  std::size_t shells_turned = 0;  ///< whose material angles were changed because their first edge has turned
+  std::size_t elements_added = 0;  ///< that are no shells
+  std::size_t shells_turned = 0;   ///< whose material angles were changed because their first edge has turned
 };
 
 struct TextEdits {

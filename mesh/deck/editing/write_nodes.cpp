@@ -116,7 +116,7 @@ Result<void> write_added_node(const ModelDifference& difference, NodeIndex node,
   const std::optional<Vec3> at = place_in_card(difference, card, node);
   if (!at) return refuse(kFlattened);
 
-  const Result<bool> constrained = takes_constraints(difference, node, example);
+  const Result<bool> constrained = placed_node(model, node) != nullptr ? Result<bool>(false) : takes_constraints(difference, node, example);
   if (!constrained) return fail(constrained.error());
   const Result<WrittenCard> written =
       *constrained ? writer.new_constrained_node(card.ref(), id, *at) : Result<WrittenCard>(writer.new_node(card.ref(), id, *at));

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mesh/deck/lsdyna/element_writer.h"
 #include "mesh/deck/lsdyna/field_line.h"
 #include "mesh/deck/lsdyna/mesh_cards.h"
 #include "mesh/deck/lsdyna/parameters.h"
 #include "mesh/deck/lsdyna/set_writer.h"
 #include "mesh/deck/lsdyna/shell_writer.h"
+#include "mesh/deck/lsdyna/weld_cards.h"
 #include "mesh/deck/text/format_number.h"
 #include "mesh/deck/text/number.h"
 
@@ -103,6 +105,23 @@ class Writer : public CardWriter {
   Result<std::vector<Replacement>> copy_single(std::string_view text, const Referrer& card, const Reference& single,
                                                std::span<const std::int64_t> ids) const override {
     return lsdyna::copy_single(text, card, single, ids);
+  }
+
+  Result<ElementPlace> find_element(const Deck& deck, ElementClass element_class, std::int64_t id,
+                                    std::span<const std::int64_t> nodes) const override {
+    return lsdyna::find_element(deck, element_class, id, nodes);
+  }
+  Result<WrittenCard> element_like(std::string_view text, const ElementPlace& example, const ElementCard& element) const override {
+    return lsdyna::element_like(text, example, element);
+  }
+  std::size_t end_of_cards(std::string_view text) const override { return lsdyna::end_of_cards(text); }
+  Result<std::string> element_header(ElementClass) const override { return "*ELEMENT_BEAM"; }
+  Result<WrittenCard> new_element(std::string_view text, ElementClass element_class, const ElementCard& element) const override {
+    return lsdyna::new_element(text, element_class, element);
+  }
+
+  Result<std::pair<Part, std::string>> weld_part(const Deck& deck, const Model& model, const WeldPart& wanted) const override {
+    return lsdyna::weld_part(deck, model, wanted);
   }
 
   std::int64_t largest_node_id(std::uint16_t style) const override {

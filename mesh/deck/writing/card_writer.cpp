@@ -41,4 +41,22 @@ Result<std::vector<Replacement>> CardWriter::copy_single(std::string_view, const
   return fail("", "can't be written again for another");
 }
 
+Result<ElementPlace> CardWriter::find_element(const Deck& deck, ElementClass, std::int64_t, std::span<const std::int64_t>) const {
+  return fail("", "can't be an example: this version adds no such elements to " + std::string(name(deck.format)) + " decks");
+}
+
+Result<WrittenCard> CardWriter::element_like(std::string_view, const ElementPlace&, const ElementCard&) const {
+  return fail("", "can't be an example");
+}
+
+Result<std::pair<Part, std::string>> CardWriter::weld_part(const Deck& deck, const Model&, const WeldPart&) const {
+  return fail("", "this version makes no welds in " + std::string(name(deck.format)) + " decks: it makes beams in LS-DYNA decks");
+}
+
+Result<std::string> CardWriter::element_header(ElementClass) const { return fail("", "has no example to be written like"); }
+
+Result<WrittenCard> CardWriter::new_element(std::string_view, ElementClass, const ElementCard&) const {
+  return fail("", "has no example to be written like");
+}
+
 }  // namespace prismesh::mesh::deck

@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/error.h"
@@ -103,6 +104,32 @@ class CardWriter {
   /// Where inheritance is `follows`: repeats the card at `single.card` for each of `ids`, right behind it. `single` names one id.
   virtual Result<std::vector<Replacement>> copy_single(std::string_view text, const Referrer& card, const Reference& single,
                                                        std::span<const std::int64_t> ids) const;
+
+  /// Searches the card of an element that is no shell. `id`: of the model; `nodes`: its nodes' ids, for the search must not mistake another
+  /// for it. Errors: it can't be found or is of a kind that can't be an example; the reason as the end of a sentence about the element.
+  virtual Result<ElementPlace> find_element(const Deck& deck, ElementClass element_class, std::int64_t id,
+                                            std::span<const std::int64_t> nodes) const;
+  /// A new element's card in the format of the one at `example`, of the same part. Everything but its id and nodes is carried over.
+  virtual Result<WrittenCard> element_like(std::string_view text, const ElementPlace& example, const ElementCard& element) const;
+
+  /// Where cards without an example go: behind all others of the main file, before the line that ends it.
+  virtual std::size_t end_of_cards(std::string_view text) const { return text.size(); }
+  /// The keyword line of such a block for elements of a class, and a card in it. Errors: as shell_in_block.
+  virtual Result<std::string> element_header(ElementClass element_class) const;
+  virtual Result<WrittenCard> new_element(std::string_view text, ElementClass element_class, const ElementCard& element) const;
+
+  /// What a part of new welds needs that no existing weld is an example for.
+  struct WeldPart {
+    double diameter = 0;               ///< deck's length unit
+    std::vector<std::int64_t> sheets;  ///< ids of the parts that it joins, ascending
+    std::optional<double> density;     ///< of the sheets; deck's units, here and below
+    std::optional<double> youngs_modulus;
+    std::optional<double> poissons_ratio;
+    std::optional<double> yield_stress;  ///< absent: the least of the sheets' materials
+  };
+  /// The part with its name, section and material, and its cards (AddedPart::cards). Ids are above all taken in their class. Errors: a
+  /// value isn't known, or the format has no such welds; a whole sentence.
+  virtual Result<std::pair<Part, std::string>> weld_part(const Deck& deck, const Model& model, const WeldPart& wanted) const;
 
   /// The largest id that fits the field.
   virtual std::int64_t largest_node_id(std::uint16_t style) const = 0;

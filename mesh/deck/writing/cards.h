@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace prismesh::mesh::deck {
 
@@ -32,6 +33,22 @@ struct ShellCard {
   /// share[c][k]: the weight of the example's corner k at this shell's corner c. Corner thicknesses and offsets are mixed with it.
   std::array<std::array<double, 4>, 4> share{};
   double turn_degrees = 0;  ///< from the example's first edge to this one's, about the example's normal; material angles follow it
+};
+
+/// Where the card of an element stands that is no shell: the deck keeps no places of these, they are searched.
+struct ElementPlace {
+  std::uint32_t file = 0;         ///< index into Deck::files
+  std::uint64_t offset = 0;       ///< of its first line
+  std::uint64_t end = 0;          ///< one past its last line's last character
+  std::uint16_t style = 0;        ///< a number that only the format's own writer knows
+  std::int64_t last_in_file = 0;  ///< the largest id of the class in the file's text
+};
+
+/// A new element that is no shell; ids as in the file's text.
+struct ElementCard {
+  std::int64_t id = 0;
+  std::int64_t part = 0;
+  std::vector<std::int64_t> nodes;
 };
 
 /// How a card that names a single node or shell (ReferenceRole::single) applies to what comes from that one: to a node between others

@@ -114,5 +114,50 @@ TEST_F(ModelChange, that_does_not_fit_is_told) {
       << "a parent behind those that count";
 }
 
+/// A weld with a part of its own, and one like the deck's beam.
+void add_two_welds(Model& model) {
+  std::vector<NodeIndex> ends;
+  for (const std::int64_t id : {100, 101})
+    ends.push_back(
+        mesh::add_placed_node(model, id, {0.5, 0.5, static_cast<double>(id)}, mesh::edge_origin(NodeIndex(0), NodeIndex(1)), id == 101));
+  mesh::Part part;
+  part.id = 90;
+  part.name = "spot welds";
+  const mesh::PartIndex added = mesh::add_part(model, part, {"*PART\nspot welds\n"});
+  mesh::add_element(model, mesh::ElementClass::beam, 6, added, ends, mesh::kNoExample);
+  mesh::add_element(model, mesh::ElementClass::beam, 7, mesh::PartIndex(0), ends, 0);
+}
+
+TEST_F(ModelChange, holds_added_elements_and_parts) {
+  add_two_welds(model);
+  const Model there = read();
+  expect_same(there, model);
+  const auto beam = static_cast<std::size_t>(mesh::ElementClass::beam);
+  EXPECT_EQ(there.elements[beam]->id, model.elements[beam]->id);
+  EXPECT_EQ(there.elements[beam]->part, model.elements[beam]->part);
+  EXPECT_EQ(there.elements[beam]->nodes, model.elements[beam]->nodes);
+  EXPECT_EQ(there.topology_change->element_examples, model.topology_change->element_examples);
+  EXPECT_EQ(there.topology_change->placed_nodes, model.topology_change->placed_nodes);
+  EXPECT_EQ(there.topology_change->added_parts, model.topology_change->added_parts);
+  EXPECT_EQ(there.parts->back().id, 90);
+  EXPECT_EQ(write_model_change(original, there), write_model_change(original, model));
+}
+
+TEST_F(ModelChange, with_elements_that_do_not_fit_is_told) {
+  const auto refusal_with = [&](const std::function<void(Model&)>& change) {
+    model = original;
+    change(model);
+    return refusal([](auto&) {});
+  };
+  const auto add = [](Model& m, std::int64_t id, mesh::PartIndex part, NodeIndex node, std::uint32_t example) {
+    mesh::add_element(m, mesh::ElementClass::beam, id, part, std::vector{node}, example);
+  };
+  EXPECT_THAT(refusal_with([&](Model& m) { add(m, 5, mesh::PartIndex(0), NodeIndex(0), 0); }), HasSubstr("id that isn't free"));
+  EXPECT_THAT(refusal_with([&](Model& m) { add(m, 6, mesh::PartIndex(77), NodeIndex(0), 0); }), HasSubstr("a part that doesn't exist"));
+  EXPECT_THAT(refusal_with([&](Model& m) { add(m, 6, mesh::PartIndex(0), NodeIndex(77), 0); }), HasSubstr("a node that doesn't exist"));
+  EXPECT_THAT(refusal_with([&](Model& m) { add(m, 6, mesh::PartIndex(0), NodeIndex(0), 1); }), HasSubstr("like one that doesn't exist"));
+  EXPECT_THAT(refusal_with([&](Model& m) { mesh::add_part(m, {}, {"*PART\n"}); }), HasSubstr("an added part has an id"));
+}
+
 }  // namespace
 }  // namespace prismesh::ipc

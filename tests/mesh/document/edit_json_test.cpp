@@ -161,7 +161,7 @@ TEST(EditJson, what_is_wrong_within_a_field_is_said) {
 }
 
 TEST(EditJson, what_is_not_there_yet_is_refused_by_name) {
-  EXPECT_THAT(why_not(R"({"edit":"weld","mode":"full"})"), HasSubstr("\"weld\" isn't there yet in this version"));
+  EXPECT_THAT(why_not(R"({"edit":"bond","mode":"full"})"), HasSubstr("\"bond\" isn't there yet in this version"));
 }
 
 TEST(EditJson, axes_and_planes_are_checked_where_they_are_written) {

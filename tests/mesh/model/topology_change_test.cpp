@@ -7,6 +7,8 @@
 #include <set>
 #include <string>
 
+#include <array>
+
 #include <gtest/gtest.h>
 
 #include "mesh/model/adjacency.h"
@@ -262,6 +264,41 @@ TEST(TopologyChange, adjacency_of_what_is_only_taken_away_or_only_put_there) {
   for (int i = 0; i < 5; ++i) add_node(more, 9000 + i, Vec3(i, -1, 0), edge_origin(NodeIndex(std::size_t{0}), NodeIndex(std::size_t{1})));
   expect_same_adjacency(update_adjacency(before, more), build_adjacency(more));
   expect_same_adjacency(update_adjacency(before, before), *before.adjacency);
+}
+
+TEST(TopologyChange, elements_and_parts_are_added_behind_those_of_the_deck) {
+  const Model before = test::make_model({{1, Vec3(0, 0, 0)}, {2, Vec3(1, 0, 0)}, {3, Vec3(1, 1, 0)}}, {{1, 7, {1, 2, 3, 3}}},
+                                        {{ElementClass::beam, 5, 8, {1, 2}}});
+  Model model = before;
+  const NodeIndex end = add_placed_node(model, 9, Vec3(0.5, 0.5, 0), edge_origin(NodeIndex(0), NodeIndex(1)), true);
+  Part part;
+  part.id = 20;
+  const PartIndex added_part = add_part(model, part, {"*PART\n"});
+  EXPECT_EQ(add_element(model, ElementClass::beam, 6, added_part, std::array{NodeIndex(2), end}, 0), 1u);
+  EXPECT_EQ(add_element(model, ElementClass::beam, 7, added_part, std::array{NodeIndex(0), end}, kNoExample), 2u);
+
+  const auto beam = static_cast<std::size_t>(ElementClass::beam);
+  EXPECT_EQ(before.elements[beam]->size(), 1u);
+  EXPECT_EQ(model.elements[beam]->id, (std::vector<std::int64_t>{5, 6, 7}));
+  EXPECT_EQ(model.elements[beam]->nodes.back(), end);
+  EXPECT_EQ(model.topology_change->deck_elements[beam], 1u);
+  EXPECT_EQ(model.topology_change->element_examples[beam], (std::vector<std::uint32_t>{0, kNoExample}));
+  ASSERT_NE(placed_node(model, end), nullptr);
+  EXPECT_EQ(placed_node(model, NodeIndex(0)), nullptr);
+  EXPECT_EQ(model.parts->back().id, 20);
+  EXPECT_EQ(before.parts->back().id, 8);
+
+  const Changes changes = changes_between(before, model);
+  EXPECT_EQ(changes.other_elements(), 2u);
+  EXPECT_EQ(changes.added_elements[beam], (std::vector<std::uint32_t>{1, 2}));
+  EXPECT_EQ(changes.added_parts, std::vector<PartIndex>{added_part});
+  EXPECT_FALSE(changes.empty());
+  EXPECT_TRUE(changes_between(model, model).empty());
+
+  Model next = model;
+  add_element(next, ElementClass::beam, 8, added_part, std::array{NodeIndex(1), end}, 0);
+  EXPECT_EQ(model.elements[beam]->size(), 3u);
+  EXPECT_EQ(changes_between(model, next).added_elements[beam], std::vector<std::uint32_t>{3});
 }
 
 }  // namespace

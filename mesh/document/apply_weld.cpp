@@ -1,0 +1,390 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/counted.h"
+#include "base/readable_number.h"
+#include "mesh/connections/weld_spots.h"
+#include "mesh/deck/editing/new_ids.h"
+#include "mesh/deck/editing/text_changes.h"
+#include "mesh/deck/formats/formats.h"
+#include "mesh/document/apply.h"
+#include "mesh/document/deck_relations.h"
+#include "mesh/document/grow_parts.h"
+#include "mesh/document/grow_relations.h"
+#include "mesh/document/part_marks.h"
+#include "mesh/document/restructure.h"
+#include "mesh/document/weld_places.h"
+#include "mesh/model/topology_change.h"
+#include "mesh/spatial/box_tree.h"
+
+namespace prismesh::mesh::document {
+
+namespace {
+
+using connections::SheetAtSpot;
+using connections::SpotStack;
+
+constexpr std::size_t kMaxSpotsTold = 1000;
+
+std::string part_words(const Model& model, PartIndex part) {
+  return part.valid() ? "part:" + std::to_string((*model.parts)[part.value].id) : "a shell of no part";
+}
+
+std::string short_words(double length) { return readable(length, 3); }
+
+// --- what new welds are like ---
+
+/// What the new elements get from an existing one, or from the part that is made for them.
+struct WeldKind {
+  ElementClass element_class = ElementClass::beam;
+  PartIndex part;
+  std::uint32_t example = kNoExample;  ///< as TopologyChange::element_examples
+  /// The nodes whose cards those of new nodes follow, and whose sets they join if `joins_sets`; nothing: those of the sheets.
+  std::optional<NodeOrigin> beside;
+  bool joins_sets = false;
+};
+
+/// "beam:9" as a class and an id.
+struct NamedElement {
+  ElementClass element_class = ElementClass::beam;
+  std::int64_t id = 0;
+};
+
+Result<NamedElement> parse_element(const std::string& text) {
+  const std::size_t colon = text.find(':');
+  const std::string word = text.substr(0, colon), digits = colon == std::string::npos ? "" : text.substr(colon + 1);
+  const bool is_id = !digits.empty() && digits.size() <= 18 && digits.find_first_not_of("0123456789") == std::string::npos;
+  for (int c = 1; is_id && c < kElementClassCount; ++c)
+    if (const auto each = static_cast<ElementClass>(c); word == name(each) || (word == "spring" && each == ElementClass::discrete))
+      return NamedElement{each, std::stoll(digits)};
+  return fail("", "weld: \"like\" must name an element that is a weld, as \"beam:9\", not \"" + text + "\"");
+}
+
+/// The element's index in its class. Errors: there is none, or it is left out.
+Result<std::uint32_t> find_element(const Document& document, const NamedElement& wanted) {
+  const Model& model = document.current().model;
+  const std::string words = std::string(name(wanted.element_class)) + " " + std::to_string(wanted.id);
+  const auto& block = model.elements[static_cast<std::size_t>(wanted.element_class)];
+  if (block)
+    if (const auto at = std::find(block->id.begin(), block->id.end(), wanted.id); at != block->id.end())
+      return static_cast<std::uint32_t>(at - block->id.begin());
+  for (const deck::HiddenElements::Card& card : document.deck->hidden.cards)
+    if (card.element_class == wanted.element_class && card.id == wanted.id)
+      return fail("", "weld: " + words + " can't be the example: a node of it isn't defined");
+  return fail("", "weld: there is no " + words);
+}
+
+Result<WeldKind> like_existing(const Document& document, const std::string& like) {
+  const Model& model = document.current().model;
+  const Result<NamedElement> named = parse_element(like);
+  if (!named) return fail(named.error());
+  const Result<std::uint32_t> element = find_element(document, *named);
+  if (!element) return fail(element.error());
+  const auto c = static_cast<std::size_t>(named->element_class);
+  const ElementBlock& block = *model.elements[c];
+  const std::span<const NodeIndex> nodes =
+      std::span(block.nodes).subspan(block.first_node[*element], block.first_node[*element + 1] - block.first_node[*element]);
+  const std::string words = std::string(name(named->element_class)) + " " + std::to_string(named->id);
+  if ((named->element_class != ElementClass::beam && named->element_class != ElementClass::discrete) || nodes.size() != 2)
+    return fail("", "weld: " + words + " can't be the example: this version makes welds of beams and springs with two nodes");
+  if (!block.part[*element].valid()) return fail("", "weld: " + words + " can't be the example: it has no part");
+  WeldKind kind{named->element_class, block.part[*element], *element, edge_origin(nodes[0], nodes[1]), true};
+  const bool is_added = model.topology_change && *element >= model.topology_change->deck_elements[c];
+  if (!is_added) return kind;
+  kind.example = model.topology_change->element_examples[c][*element - model.topology_change->deck_elements[c]];
+  const PlacedNode* placed = placed_node(model, nodes[0]);
+  kind.joins_sets = placed != nullptr && placed->joins_sets != 0;
+  return kind;
+}
+
+/// Of the sheets' parts, the least stiff of a value: a weld isn't better than what it joins.
+std::optional<double> least_of(const Model& model, const std::vector<PartIndex>& parts, std::optional<double> Part::*value) {
+  std::optional<double> least;
+  for (const PartIndex part : parts)
+    if (const std::optional<double>& of_part = (*model.parts)[part.value].*value; of_part && (!least || *of_part < *least)) least = of_part;
+  return least;
+}
+
+/// Makes a part for the welds, as the format has it. `parts`: of the sheets, ascending.
+Result<WeldKind> make_part(const Document& document, const Weld& edit, const std::vector<PartIndex>& parts, Generation& next) {
+  if (!edit.diameter)
+    return fail("", "weld: \"like\" or \"diameter\" is missing: an existing weld to copy (\"beam:9\"), or the diameter of a new section");
+  Model& model = next.model;
+  deck::CardWriter::WeldPart wanted;
+  wanted.diameter = *edit.diameter;
+  for (const PartIndex part : parts) wanted.sheets.push_back((*model.parts)[part.value].id);
+  const auto chosen = [&](const std::optional<double>& given, std::optional<double> Part::*value) {
+    return given ? given : least_of(model, parts, value);
+  };
+  wanted.density = chosen(edit.density, &Part::density);
+  wanted.youngs_modulus = chosen(edit.youngs_modulus, &Part::youngs_modulus);
+  wanted.poissons_ratio = chosen(edit.poissons_ratio, &Part::poissons_ratio);
+  wanted.yield_stress = edit.yield_stress;
+  Result<std::pair<Part, std::string>> made = deck::card_writer(document.deck->format)->weld_part(*document.deck, model, wanted);
+  if (!made) return fail("", "weld: " + made.error().text());
+  WeldKind kind;
+  kind.part = add_part(model, std::move(made->first), {std::move(made->second)});
+  grow_parts(model.parts->size(), next);
+  return kind;
+}
+
+// --- where ---
+
+/// Where welds are already: the nodes and middles of beams, springs and placed nodes, by cells of a grid.
+class WeldsThere {
+ public:
+  WeldsThere(const Generation& generation, double cell) : cell_(cell) {
+    const Model& model = generation.model;
+    for (const NodeOnSheet& each : generation.relations->dependents.on_sheets)
+      if (!each.tied) add(model.position(each.node));
+    for (const ElementClass kind : {ElementClass::beam, ElementClass::discrete}) {
+      const auto& block = model.elements[static_cast<std::size_t>(kind)];
+      for (std::size_t e = 0; block && e < block->size(); ++e) {
+        if (block->first_node[e + 1] - block->first_node[e] != 2) continue;
+        const Vec3 &a = model.position(block->nodes[block->first_node[e]]), &b = model.position(block->nodes[block->first_node[e] + 1]);
+        if ((a - b).norm() < 2 * cell) add((a + b) / 2);
+      }
+    }
+  }
+  void add(const Vec3& at) {
+    if (cell_ > 0) cells_[cell_of(at)].push_back(at);
+  }
+  /// Whether one is nearer than the cell's size.
+  bool near(const Vec3& at) const {
+    if (!(cell_ > 0)) return false;
+    const std::array<std::int64_t, 3> middle = cell_of(at);
+    for (std::int64_t x = -1; x <= 1; ++x)
+      for (std::int64_t y = -1; y <= 1; ++y)
+        for (std::int64_t z = -1; z <= 1; ++z)
+          if (const auto cell = cells_.find({middle[0] + x, middle[1] + y, middle[2] + z}); cell != cells_.end())
+            for (const Vec3& other : cell->second)
+              if ((other - at).norm() < cell_) return true;
+    return false;
+  }
+
+ private:
+  std::array<std::int64_t, 3> cell_of(const Vec3& at) const {
+    std::array<std::int64_t, 3> cell{};
+    for (std::size_t k = 0; k < 3; ++k)
+      cell[k] = static_cast<std::int64_t>(std::floor(std::clamp(at[static_cast<Eigen::Index>(k)] / cell_, -1e15, 1e15)));
+    return cell;
+  }
+
+  double cell_;
+  std::map<std::array<std::int64_t, 3>, std::vector<Vec3>> cells_;
+};
+
+/// A weld to be made: the sheets that it joins, in order.
+struct WantedWeld {
+  Vec3 at = Vec3::Zero();
+  std::vector<SheetAtSpot> sheets;
+};
+
+class SpotSearch {
+ public:
+  SpotSearch(const Generation& generation, const Weld& edit, EditReport& report)
+      : generation_(generation), edit_(edit), report_(report), there_(generation, edit.pitch.value_or(0) / 2), all_(generation.model) {
+    report_.welded.emplace();
+    options_.gap = edit.gap;
+  }
+
+  void search(const WeldLine& line, std::vector<WantedWeld>& welds) {
+    const spatial::BoxTree tree = tree_of(line.parts);
+    for (const Vec3& place : line.places) search_at(line, tree, place, welds);
+  }
+  const std::string& first_reason() const { return first_; }
+
+ private:
+  /// Without hidden parts and, if `parts` isn't empty, all others.
+  spatial::BoxTree tree_of(const std::vector<PartIndex>& parts) const {
+    const Model& model = generation_.model;
+    const std::vector<std::uint8_t> hidden = hidden_parts(generation_);
+    spatial::BoxTree tree = all_;
+    ShellSet out;
+    if (hidden.empty() && parts.empty()) return tree;
+    for (std::size_t s = 0; s < model.shell_count(); ++s) {
+      const PartIndex part = model.shell_parts[s];
+      const bool counts = parts.empty() || std::binary_search(parts.begin(), parts.end(), part);
+      const bool seen = hidden.empty() || !part.valid() || hidden[part.value] == 0;
+      if (!(counts && seen) && tree.contains(ShellIndex(s))) out.emplace_back(s);
+    }
+    tree.leave_out(out);
+    return tree;
+  }
+
+  void leave(const Vec3& at, std::string why) {
+    Welded& welded = *report_.welded;
+    ++welded.spots_left;
+    if (first_.empty()) first_ = why;
+    if (welded.left_out.size() < kMaxSpotsTold) welded.left_out.push_back({{at.x(), at.y(), at.z()}, std::move(why)});
+  }
+
+  void search_at(const WeldLine& line, const spatial::BoxTree& tree, const Vec3& place, std::vector<WantedWeld>& welds) {
+    const Model& model = generation_.model;
+    if (edit_.edge_distance)
+      for (const auto& sides : line.sides)
+        for (const std::vector<Vec3>& side : sides)
+          if (const double distance = connections::distance_to(side, place); distance < *edit_.edge_distance)
+            return leave(place, "it is " + short_words(distance) + " from the flange's edge");
+    const SpotStack stack = connections::stack_at(model, tree, place, options_);
+    if (stack.sheets.empty())
+      return leave(place, stack.nearest ? "no sheet is there; the nearest is " + short_words(*stack.nearest) + " away"
+                                        : std::string("no sheet is there"));
+    const auto wanted = static_cast<std::size_t>(edit_.sheets.value_or(2));
+    if (stack.sheets.size() < wanted)
+      return leave(place, (stack.sheets.size() == 1 ? "only a sheet of " + part_words(model, part_of(stack.sheets.front())) + " is"
+                                                    : "only " + std::to_string(stack.sheets.size()) + " sheets are") +
+                              " there" + thickness_words(stack));
+    std::vector<SheetAtSpot> sheets = nearest_sheets(stack, place);
+    Vec3 middle = Vec3::Zero();
+    for (const SheetAtSpot& sheet : sheets) middle += sheet.point / static_cast<double>(sheets.size());
+    if (there_.near(middle) || std::any_of(sheets.begin(), sheets.end(), [&](const SheetAtSpot& s) { return there_.near(s.point); }))
+      return leave(place, "a weld is there already, nearer than half the pitch");
+    for (const SheetAtSpot& sheet : sheets) there_.add(sheet.point);
+    welds.push_back({place, std::move(sheets)});
+  }
+
+  PartIndex part_of(const SheetAtSpot& sheet) const { return generation_.model.shell_parts[sheet.shell.value]; }
+
+  std::string thickness_words(const SpotStack& stack) const {
+    const PartIndex part = part_of(stack.sheets.front());
+    const bool known = part.valid() && (*generation_.model.parts)[part.value].thickness.has_value();
+    return known || edit_.gap > 0 ? "" : "; it has no thickness, so that \"gap\" must say how far apart sheets may be";
+  }
+
+  /// As many as are wanted, next to each other, about the place.
+  std::vector<SheetAtSpot> nearest_sheets(const SpotStack& stack, const Vec3& place) const {
+    const std::size_t wanted = edit_.sheets ? static_cast<std::size_t>(*edit_.sheets) : stack.sheets.size();
+    std::size_t best = 0;
+    double least = -1;
+    for (std::size_t first = 0; first + wanted <= stack.sheets.size(); ++first) {
+      Vec3 middle = Vec3::Zero();
+      for (std::size_t i = 0; i < wanted; ++i) middle += stack.sheets[first + i].point / static_cast<double>(wanted);
+      if (const double distance = (middle - place).norm(); least < 0 || distance < least) least = distance, best = first;
+    }
+    const auto from = stack.sheets.begin() + static_cast<std::ptrdiff_t>(best);
+    return {from, from + static_cast<std::ptrdiff_t>(wanted)};
+  }
+
+  const Generation& generation_;
+  const Weld& edit_;
+  EditReport& report_;
+  connections::SpotOptions options_;
+  WeldsThere there_;
+  spatial::BoxTree all_;
+  std::string first_;
+};
+
+/// The parts of the sheets, ascending.
+std::vector<PartIndex> parts_joined(const Model& model, const std::vector<WantedWeld>& welds) {
+  std::vector<PartIndex> parts;
+  for (const WantedWeld& weld : welds)
+    for (const SheetAtSpot& sheet : weld.sheets)
+      if (const PartIndex part = model.shell_parts[sheet.shell.value]; part.valid()) parts.push_back(part);
+  std::sort(parts.begin(), parts.end());
+  parts.erase(std::unique(parts.begin(), parts.end()), parts.end());
+  return parts;
+}
+
+Result<void> refuse_locked(const Generation& generation, const std::vector<PartIndex>& parts, const std::string& what) {
+  for (const PartIndex part : parts)
+    if ((*generation.parts)[part.value].locked)
+      return fail("", "weld: " + part_words(generation.model, part) + " is locked: " + what + " would be added to it");
+  return {};
+}
+
+/// The corner of the shell that the place is nearest to.
+NodeOrigin corner_origin(const Model& model, const SheetAtSpot& sheet) {
+  const ShellNodes& nodes = model.shell(sheet.shell);
+  NodeIndex nearest = nodes.node[0];
+  for (const NodeIndex node : nodes.node)
+    if ((model.position(node) - sheet.point).squaredNorm() < (model.position(nearest) - sheet.point).squaredNorm()) nearest = node;
+  return {{nearest, NodeIndex(), NodeIndex(), NodeIndex()}, {1, 0, 0, 0}};
+}
+
+/// A node on each sheet, and an element between each and the next.
+Result<void> add_welds(const Document& document, const WeldKind& kind, const std::vector<WantedWeld>& welds, Model& model) {
+  deck::NewIds ids(*document.deck, model);
+  for (const WantedWeld& weld : welds) {
+    std::vector<NodeIndex> nodes;
+    for (const SheetAtSpot& sheet : weld.sheets) {
+      const NodeOrigin origin = kind.beside ? *kind.beside : corner_origin(model, sheet);
+      const Result<std::int64_t> id = ids.placed_node(origin, kind.joins_sets);
+      if (!id) return fail(id.error());
+      nodes.push_back(add_placed_node(model, *id, sheet.point, origin, kind.joins_sets));
+    }
+    for (std::size_t n = 1; n < nodes.size(); ++n) {
+      const Result<std::int64_t> id = ids.element(kind.element_class, kind.example);
+      if (!id) return fail(id.error());
+      add_element(model, kind.element_class, *id, kind.part, std::array{nodes[n - 1], nodes[n]}, kind.example);
+    }
+  }
+  return deck::can_restructure(*document.deck, document.opened->model, model, {});
+}
+
+/// Errors: what the edit asks for isn't made in this version, or contradicts itself.
+Result<void> check_form(const Document& document, const Weld& edit) {
+  const std::string as = edit.as.value_or("beam");
+  constexpr std::string_view kForms[] = {"beam", "spring", "solid", "constrained", "cweld", "cfast", "fastener"};
+  if (std::find(std::begin(kForms), std::end(kForms), as) == std::end(kForms))
+    return fail("", "weld: \"as\" must be \"beam\", not \"" + as + "\"");
+  if (as != "beam" && as != "spring")
+    return fail("", "weld: this version makes no welds as \"" + as + "\": it makes beams in LS-DYNA decks");
+  if (edit.like && edit.diameter)
+    return fail("", "weld: \"diameter\" belongs to the section, which \"like\" takes from the existing weld; only one can be given");
+  if (edit.like && (edit.density || edit.youngs_modulus || edit.poissons_ratio || edit.yield_stress))
+    return fail("", "weld: \"like\" takes the material from the existing weld; its values can't be given too");
+  if (!document.deck->references || document.deck->files.empty()) return fail("", "weld: the document has no deck");
+  return {};
+}
+
+}  // namespace
+
+Result<void> apply_edit(const Document& document, const Weld& edit, Generation& next, EditReport& report, const Progress& progress) {
+  const Generation& before = document.current();
+  if (const Result<void> sound = check_form(document, edit); !sound) return sound;
+  std::optional<WeldKind> kind;
+  if (edit.like) {
+    Result<WeldKind> like = like_existing(document, *edit.like);
+    if (!like) return fail(like.error());
+    kind = *like;
+  }
+  const Result<std::vector<WeldLine>> lines = weld_places(document, edit, progress);
+  if (!lines) return fail(lines.error());
+  std::vector<WantedWeld> welds;
+  SpotSearch search(before, edit, report);
+  for (const WeldLine& line : *lines) search.search(line, welds);
+  if (welds.empty())
+    return fail("", "weld: no weld can be made at any of " + counted(report.welded->spots_left, "spot") + ": " + search.first_reason());
+  const std::vector<PartIndex> sheets = parts_joined(before.model, welds);
+  if (const Result<void> open = refuse_locked(before, sheets, "welds"); !open) return open;
+  if (kind)
+    if (const Result<void> open = refuse_locked(before, {kind->part}, "elements"); !open) return open;
+  if (!kind) {
+    Result<WeldKind> made = make_part(document, edit, sheets, next);
+    if (!made) return fail(made.error());
+    kind = *made;
+  }
+  if (const Result<void> added = add_welds(document, *kind, welds, next.model); !added) return added;
+
+  settle_growth(before, {}, next);
+  grow_relations(before.model, next);
+  const Changes changes = changes_between(before.model, next.model);
+  mark_parts_at(changes.added_nodes, next);
+  report.welded->welds_added = welds.size();
+  report.elements_added = changes.other_elements();
+  report.notes.push_back(counted(welds.size(), "weld") + " added to " + part_words(next.model, kind->part));
+  if (report.welded->spots_left > 0)
+    report.notes.push_back(counted(report.welded->spots_left, "spot") + " left out; the first: " + search.first_reason());
+  note_missing_files(document, changes, report);
+  return {};
+}
+
+}  // namespace prismesh::mesh::document

@@ -1,0 +1,13 @@
+// What edits need to know of elements that an edit adds (deck_relations.h). Private to mesh/document.
+#pragma once
+
+#include "mesh/document/generation.h"
+
+namespace prismesh::mesh::document {
+
+/// Gives `next` relations with the elements that it has and `before` hasn't: their uses of nodes, and those of their nodes that lie on
+/// sheets. Costs the relations, and the shells of the model if there are such elements. Precondition: the model of `next` has its
+/// adjacency.
+void grow_relations(const Model& before, Generation& next);
+
+}  // namespace prismesh::mesh::document
