@@ -7,6 +7,8 @@ const kPage = 50;
 const kTyping_ms = 250;
 const kAges_ms = 30_000;
 
+/// What `prismesh pull` takes too, and tells models of one name apart.
+const shortHash = (model) => model.slice(0, 8);
 const byId = (id) => document.getElementById(id);
 
 export class CatalogueSection {
@@ -135,7 +137,7 @@ export class CatalogueSection {
   }
 
   #nameOf(model) {
-    return this.#models.get(model)?.record.name ?? `${model.slice(0, 8)}..`;
+    return this.#models.get(model)?.record.name ?? `model ${shortHash(model)}`;
   }
 
   #card(record) {
@@ -145,7 +147,7 @@ export class CatalogueSection {
       {},
       `by ${record.who}, `,
       element("time", { dateTime: when.toISOString(), title: when.toLocaleString() }, ageText(record.when_s)),
-      `, ${countText(record.files, "file", "files")}, ${sizeText(record.bytes)}`,
+      `, ${countText(record.files, "file", "files")}, ${sizeText(record.bytes)}, model ${shortHash(record.model)}`,
     );
     const item = element("li", { className: "card model", id: `model-${record.model}` });
     item.append(element("h3", {}, record.name), ...picture(record), facts);
@@ -165,7 +167,7 @@ export class CatalogueSection {
 
   #buttons(record, item, state) {
     const named = (text, work, className = "") => {
-      const button = element("button", { type: "button", className, "aria-label": `${text}: ${record.name}` }, text);
+      const button = element("button", { type: "button", className, "aria-label": `${text}: ${record.name}, model ${shortHash(record.model)}` }, text);
       button.addEventListener("click", () => work(button));
       return button;
     };

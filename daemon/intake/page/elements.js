@@ -57,7 +57,8 @@ export function askUser(sentence, yes) {
     };
     agree.onclick = end(true);
     document.getElementById("question-no").onclick = end(false);
-    dialog.onclose = end(false);
+    // Browsers tell of the end of the last question when this one may be shown already.
+    dialog.onclose = () => dialog.open || end(false)();
     dialog.showModal();
     document.getElementById("question-no").focus();
   });

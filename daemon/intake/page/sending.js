@@ -238,7 +238,7 @@ class Card {
   }
   setButton(text, work) {
     this.#button.textContent = text;
-    this.#button.setAttribute("aria-label", `${text}: ${this.title}`);
+    this.#button.setAttribute("aria-label", `${text}: upload of ${this.title}`);
     this.#button.onclick = work;
     this.#button.hidden = false;
   }
