@@ -33,7 +33,9 @@ Result<void> make_code(ipc::IntakeClient& client, const IntakeOptions& options, 
   else
     context.out << made->code << "\ngood for one computer, for " << made->lifetime_s / kSecondsOfMinute
                 << " minutes; there: prismesh pair STATION " << made->code << "\nlistens at " << info->address
-                << "; SHA-256 of the certificate: " << info->fingerprint << '\n';
+                << "; SHA-256 of the certificate: " << info->fingerprint
+                << "\nin a browser: https://STATION:" << info->address.substr(info->address.rfind(':') + 1)
+                << "/, after comparing that SHA-256 with the certificate's\n";
   return {};
 }
 

@@ -24,6 +24,7 @@ void read_value(std::string_view value) {
     require(checksum->digest.size() == (checksum->algorithm == intake::ChecksumAlgorithm::sha1 ? 20u : 32u));
   if (const auto metadata = intake::parse_upload_metadata(value)) require(metadata->size() <= 32);
   if (const auto token = intake::parse_bearer(value)) require(!token->empty() && token->find(' ') == std::string_view::npos);
+  if (const auto token = intake::parse_session_cookie(value)) require(!token->empty() && token->find(';') == std::string_view::npos);
   if (const auto host = intake::parse_host(value)) require(!host->empty() && host->find('/') == std::string::npos);
   if (const auto size = intake::parse_size(value)) require(*size <= 9223372036854775807u);
   intake::lists_tag(value, "\"a\"");

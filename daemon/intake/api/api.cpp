@@ -6,6 +6,7 @@
 #include "daemon/intake/api/body_takers.h"
 #include "daemon/intake/api/model_answers.h"
 #include "daemon/intake/api/openapi.h"
+#include "daemon/intake/api/page.h"
 #include "daemon/intake/api/pair_request.h"
 #include "daemon/intake/api/refusal.h"
 #include "daemon/intake/api/tus.h"
@@ -18,6 +19,14 @@ namespace {
 using ipc::store::ContentHash;
 
 bool takes_query(Operation operation) { return operation == Operation::list_models; }
+
+json::Json token_json(const TokenRecord& token) {
+  json::Json object = json::Json::object();
+  object["name"] = token.name;
+  object["scopes"] = scope_names(token.scopes);
+  object["expires_s"] = token.expires_s;
+  return object;
+}
 
 }  // namespace
 
@@ -40,11 +49,15 @@ std::shared_ptr<void> Api::permit_for(const std::string& name) {
 std::optional<HttpResponse> Api::authorise(const HttpRequest& request, const FoundRoute& found, Call& call) {
   if (found.route != nullptr && found.route->access == Route::Access::everybody) return std::nullopt;
   const std::optional<std::string_view> header = request.header("authorization");
-  const std::optional<std::string_view> token = header ? parse_bearer(*header) : std::nullopt;
+  const std::optional<std::string_view> cookie = request.header("cookie");
+  call.by_cookie = !header && cookie;
+  const std::optional<std::string_view> token = header ? parse_bearer(*header) : cookie ? parse_session_cookie(*cookie) : std::nullopt;
   if (!token) return unauthorised();
   tl::expected<Caller, Denial> caller = access_.caller_of(*token);
   if (!caller) return caller.error() == Denial::unknown ? unauthorised() : too_many();
   call.caller = std::move(*caller);
+  if (call.by_cookie)
+    if (std::optional<HttpResponse> refused = check_browser(request)) return refused;
   if (found.route == nullptr && found.allowed.empty()) return error_response(404, "there is no such path");
   if (found.route == nullptr) {
     HttpResponse response = error_response(405, "this path takes " + found.allowed);
@@ -93,7 +106,8 @@ Reaction Api::take(const HttpRequest& request) {
 Reaction Api::dispatch(const HttpRequest& request, Call call) {
   switch (call.route->operation) {
     case Operation::health: return json_response("{\"status\": \"ok\"}\n");
-    case Operation::pair: return pair();
+    case Operation::show_page: return page_response(call.route->path);
+    case Operation::pair: return pair(request);
     case Operation::describe_uploads: return describe_uploads();
     case Operation::begin_upload:
     case Operation::show_upload:
@@ -107,13 +121,8 @@ Reaction Api::dispatch(const HttpRequest& request, Call call) {
     case Operation::fetch_file:
     case Operation::fetch_thumbnail: return dispatch_model(request, std::move(call));
     case Operation::follow_events: return follow_events(call);
-    case Operation::give_token_up:
-      return [this, call](const Respond& respond) {
-        store_->run([this, call, respond](Store&) {
-          const Result<void> revoked = access_.revoke(call.caller.name);
-          respond(revoked ? no_content() : error_response(500, "the token couldn't be revoked"));
-        });
-      };
+    case Operation::show_token: return show_token(call);
+    case Operation::give_token_up: return give_token_up(call);
     case Operation::show_metrics: return show_metrics();
     case Operation::describe_api: return json_response(std::string(openapi_text()));
   }
@@ -122,21 +131,42 @@ Reaction Api::dispatch(const HttpRequest& request, Call call) {
 
 // --- pairing ---
 
-Reaction Api::pair() {
-  return std::make_shared<SmallBody>([this](std::string body, const Respond& respond) {
+Reaction Api::pair(const HttpRequest& request) {
+  // A cookie goes to the station's own page only.
+  const bool may_have_cookie = !check_browser(request);
+  return std::make_shared<SmallBody>([this, may_have_cookie](std::string body, const Respond& respond) {
     const Result<PairRequest> asked = parse_pair_request(body);
     if (!asked) return respond(error_response(400, asked.error().message));
+    if (asked->cookie && !may_have_cookie) return respond(error_response(403, "a cookie is for the station's own page"));
     store_->run([this, asked = *asked, respond](Store&) {
       const Result<NewToken> made = access_.pair(asked.secret, asked.name);
       if (!made) return respond(error_response(403, made.error().text()));
-      json::Json answer = json::Json::object();
-      answer["token"] = made->token;
-      answer["name"] = made->record.name;
-      answer["scopes"] = scope_names(made->record.scopes);
-      answer["expires_s"] = made->record.expires_s;
-      respond(json_response(json::to_line(answer) + "\n"));
+      json::Json answer = token_json(made->record);
+      if (!asked.cookie) answer["token"] = made->token;
+      HttpResponse response = json_response(json::to_line(answer) + "\n");
+      if (asked.cookie)
+        response.headers.emplace_back("Set-Cookie", session_cookie(made->token, made->record.expires_s - made->record.made_s));
+      respond(std::move(response));
     });
   });
+}
+
+Reaction Api::show_token(const Call& call) {
+  for (const TokenRecord& token : access_.tokens())
+    if (token.hash == call.caller.token) return json_response(json::to_line(token_json(token)) + "\n");
+  return unauthorised();
+}
+
+Reaction Api::give_token_up(const Call& call) {
+  return [this, call](const Respond& respond) {
+    store_->run([this, call, respond](Store&) {
+      const Result<void> revoked = access_.revoke(call.caller.name);
+      if (!revoked) return respond(error_response(500, "the token couldn't be revoked"));
+      HttpResponse response = no_content();
+      if (call.by_cookie) response.headers.emplace_back("Set-Cookie", session_cookie("", 0));
+      respond(std::move(response));
+    });
+  };
 }
 
 // --- uploads ---

@@ -44,6 +44,7 @@ class Api {
     std::vector<std::string> parts;
     std::map<std::string, std::string, std::less<>> query;
     Caller caller;
+    bool by_cookie = false;  ///< the token came as a browser's cookie
     std::shared_ptr<void> permit;
   };
   std::optional<HttpResponse> authorise(const HttpRequest& request, const FoundRoute& found, Call& call);
@@ -53,7 +54,9 @@ class Api {
   Reaction dispatch_upload(const HttpRequest& request, Call call);
   Reaction dispatch_model(const HttpRequest& request, Call call);
 
-  Reaction pair();
+  Reaction pair(const HttpRequest& request);
+  Reaction show_token(const Call& call);
+  Reaction give_token_up(const Call& call);
   HttpResponse describe_uploads() const;
   Reaction begin_upload(const HttpRequest& request, const Call& call);
   Reaction show_upload(const Call& call);

@@ -4,7 +4,7 @@
 
 namespace prismesh::json {
 
-PRISMESH_JSON_OBJECT(intake::PairRequest, f.required("secret", m.secret), f("name", m.name));
+PRISMESH_JSON_OBJECT(intake::PairRequest, f.required("secret", m.secret), f("name", m.name), f("cookie", m.cookie));
 
 }  // namespace prismesh::json
 

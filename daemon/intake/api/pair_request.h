@@ -9,11 +9,12 @@
 namespace prismesh::intake {
 
 struct PairRequest {
-  std::string secret;  ///< of the pairing code
-  std::string name;    ///< that the client wants; may be empty
+  std::string secret;   ///< of the pairing code
+  std::string name;     ///< that the client wants; may be empty
+  bool cookie = false;  ///< the token is to come as a browser's cookie, which no script can read
 };
 
-/// Reads {"secret": "...", "name": "..."}. Errors name the field.
+/// Reads {"secret": "...", "name": "...", "cookie": false}. Errors name the field.
 Result<PairRequest> parse_pair_request(std::string_view body);
 
 }  // namespace prismesh::intake

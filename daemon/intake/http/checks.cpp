@@ -10,10 +10,12 @@ namespace prismesh::intake {
 namespace {
 
 // What would be read twice with two meanings, if it came twice.
-constexpr std::array<std::string_view, 17> kOnce{
-    "host",          "origin",           "authorization",   "content-length",  "content-type",         "transfer-encoding",
-    "upload-offset", "upload-length",    "upload-metadata", "upload-checksum", "tus-resumable",        "range",
-    "if-range",      "content-encoding", "expect",          "prismesh-name",   "prismesh-derived-from"};
+constexpr std::array<std::string_view, 19> kOnce{
+    "host",          "origin",          "authorization",         "content-length", "content-type",  "transfer-encoding", "upload-offset",
+    "upload-length", "upload-metadata", "upload-checksum",       "tus-resumable",  "range",         "if-range",          "content-encoding",
+    "expect",        "prismesh-name",   "prismesh-derived-from", "cookie",         "sec-fetch-site"};
+
+constexpr std::string_view kOtherSite = "pages of other sites have no access";
 
 std::optional<std::string_view> twice(const HttpRequest& request) {
   for (const std::string_view name : kOnce)
@@ -40,7 +42,16 @@ std::optional<HttpResponse> check_request(const HttpRequest& request, const std:
   if (!is_own_host(*host, hosts))
     return error_response(421, "this station isn't called that; say its name in the settings (remote.hosts), or use its address");
   if (const auto origin = request.header("origin"); origin && *origin != "https://" + std::string(*host_header))
-    return error_response(403, "pages of other sites have no access");
+    return error_response(403, kOtherSite);
+  return std::nullopt;
+}
+
+std::optional<HttpResponse> check_browser(const HttpRequest& request) {
+  const bool changes = request.method != "GET" && request.method != "HEAD";
+  if (changes && !request.header("origin")) return error_response(403, kOtherSite);
+  const std::optional<std::string_view> from = request.header("sec-fetch-site");
+  // "none": somebody typed the address.
+  if (from && *from != "same-origin" && (changes || *from != "none")) return error_response(403, kOtherSite);
   return std::nullopt;
 }
 

@@ -14,4 +14,8 @@ namespace prismesh::intake {
 /// `hosts`: names that this station has, in small letters; its addresses are always taken.
 std::optional<HttpResponse> check_request(const HttpRequest& request, const std::vector<std::string>& hosts);
 
+/// Refuses what a page of another site may have made a browser send with its cookie. Browsers say where a request comes from: Origin
+/// where it changes something (every method but GET and HEAD), and newer ones Sec-Fetch-Site always. Comes after check_request.
+std::optional<HttpResponse> check_browser(const HttpRequest& request);
+
 }  // namespace prismesh::intake

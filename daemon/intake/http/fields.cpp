@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::size_t kMaxMetadataKeys = 32;
 constexpr std::size_t kMaxQueryKeys = 16;
+constexpr std::string_view kSessionCookie = "__Host-prismesh";
 
 /// Cuts the text off at the separator; the whole text if there is none.
 std::string_view take_part(std::string_view& text, char separator) {
@@ -27,6 +28,15 @@ std::string_view without_blanks(std::string_view text) {
   while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
   while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
   return text;
+}
+
+std::optional<std::string_view> token_text(std::string_view token) {
+  constexpr std::size_t kMaxToken = 200;
+  const bool plain = std::all_of(token.begin(), token.end(), [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-' || c == '.';
+  });
+  if (token.empty() || token.size() > kMaxToken || !plain) return std::nullopt;
+  return token;
 }
 
 bool is_metadata_key(std::string_view key) {
@@ -120,14 +130,25 @@ bool lists_tag(std::string_view header, std::string_view tag) {
 
 std::optional<std::string_view> parse_bearer(std::string_view header) {
   constexpr std::string_view kScheme = "Bearer ";
-  constexpr std::size_t kMaxToken = 200;
   if (!header.starts_with(kScheme)) return std::nullopt;
-  const std::string_view token = header.substr(kScheme.size());
-  const bool plain = std::all_of(token.begin(), token.end(), [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-' || c == '.';
-  });
-  if (token.empty() || token.size() > kMaxToken || !plain) return std::nullopt;
-  return token;
+  return token_text(header.substr(kScheme.size()));
+}
+
+std::optional<std::string_view> parse_session_cookie(std::string_view header) {
+  std::optional<std::string_view> found;
+  while (!header.empty()) {
+    std::string_view value = without_blanks(take_part(header, ';'));
+    if (take_part(value, '=') != kSessionCookie) continue;
+    // A second one was set by somebody else; which one is meant nobody can tell.
+    if (found) return std::nullopt;
+    found = value;
+  }
+  return found ? token_text(*found) : std::nullopt;
+}
+
+std::string session_cookie(std::string_view token, std::int64_t lifetime_s) {
+  return std::string(kSessionCookie) + "=" + std::string(token) + "; Path=/; Max-Age=" + std::to_string(token.empty() ? 0 : lifetime_s) +
+         "; Secure; HttpOnly; SameSite=Strict";
 }
 
 Result<Target> parse_target(std::string_view target) {

@@ -35,6 +35,11 @@ bool lists_tag(std::string_view header, std::string_view tag);
 
 /// The token of "Bearer TOKEN".
 std::optional<std::string_view> parse_bearer(std::string_view header);
+/// The token in a header Cookie. Nothing: there is none, or two, or what no token is.
+std::optional<std::string_view> parse_session_cookie(std::string_view header);
+/// The header Set-Cookie that gives a browser its token: no script reads it, no other site's page sends it, no page of another name or
+/// without TLS sets it. An empty token takes it away.
+std::string session_cookie(std::string_view token, std::int64_t lifetime_s);
 
 /// Path and query of a target in origin form. The path isn't unescaped: no route needs that, and an escaped sign fits none.
 struct Target {

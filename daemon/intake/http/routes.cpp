@@ -14,6 +14,20 @@ constexpr auto kToken = Route::Access::token;
 constexpr std::nullopt_t kAny = std::nullopt;
 
 constexpr std::array kRoutes{
+    Route{Operation::show_page, "GET", "/", kAny, kEverybody, 0, ""},
+    Route{Operation::show_page, "GET", "/page/style.css", kAny, kEverybody, 0, ""},
+    Route{Operation::show_page, "GET", "/page/icon.svg", kAny, kEverybody, 0, ""},
+    Route{Operation::show_page, "GET", "/page/asking.js", kAny, kEverybody, 0, ""},
+    Route{Operation::show_page, "GET", "/page/catalogue.js", kAny, kEverybody, 0, ""},
+    Route{Operation::show_page, "GET", "/page/elements.js", kAny, kEverybody, 0, ""},
+    Route{Operation::show_page, "GET", "/page/fetching.js", kAny, kEverybody, 0, ""},
+    Route{Operation::show_page, "GET", "/page/main.js", kAny, kEverybody, 0, ""},
+    Route{Operation::show_page, "GET", "/page/memory.js", kAny, kEverybody, 0, ""},
+    Route{Operation::show_page, "GET", "/page/pairing.js", kAny, kEverybody, 0, ""},
+    Route{Operation::show_page, "GET", "/page/sending.js", kAny, kEverybody, 0, ""},
+    Route{Operation::show_page, "GET", "/page/sha256.js", kAny, kEverybody, 0, ""},
+    Route{Operation::show_page, "GET", "/page/upload.js", kAny, kEverybody, 0, ""},
+    Route{Operation::show_page, "GET", "/page/zip.js", kAny, kEverybody, 0, ""},
     Route{Operation::health, "GET", "/health", kAny, kEverybody, 0, ""},
     Route{Operation::pair, "POST", "/pair", kAny, kEverybody, 4096, "application/json"},
     Route{Operation::describe_uploads, "OPTIONS", "/uploads", Scope::upload, kToken, 0, ""},
@@ -29,6 +43,7 @@ constexpr std::array kRoutes{
     Route{Operation::fetch_file, "GET", "/models/{model}/files/{file}", Scope::read, kToken, 0, ""},
     Route{Operation::fetch_thumbnail, "GET", "/models/{model}/thumbnail", Scope::read, kToken, 0, ""},
     Route{Operation::follow_events, "GET", "/events", Scope::read, kToken, 0, ""},
+    Route{Operation::show_token, "GET", "/token", kAny, kToken, 0, ""},
     Route{Operation::give_token_up, "DELETE", "/token", kAny, kToken, 0, ""},
     Route{Operation::show_metrics, "GET", "/metrics", Scope::metrics, kToken, 0, ""},
     Route{Operation::describe_api, "GET", "/openapi.json", kAny, kToken, 0, ""},

@@ -13,6 +13,7 @@
 namespace prismesh::intake {
 
 enum class Operation : std::uint8_t {
+  show_page,
   health,
   pair,
   describe_uploads,
@@ -28,6 +29,7 @@ enum class Operation : std::uint8_t {
   fetch_file,
   fetch_thumbnail,
   follow_events,
+  show_token,
   give_token_up,
   show_metrics,
   describe_api,
@@ -39,7 +41,7 @@ struct Route {
   std::string_view path;       ///< parts in braces stand for anything without a slash
   std::optional<Scope> scope;  ///< the right it needs; nothing: see `access`
   enum class Access : std::uint8_t {
-    everybody,  ///< without a token: pairing and health only
+    everybody,  ///< without a token: the page's own files, pairing and health only
     token,      ///< any token, or one with the right `scope`
   } access;
   std::uint64_t max_body;      ///< bytes; 0: no body. Uploads have their own limit

@@ -185,8 +185,12 @@ void Connection::fill_header(HeaderOnly::header_type& header, const HttpResponse
   if (response.status == 460) header.reason("Checksum Mismatch");
   for (const auto& [name, value] : response.headers) header.insert(name, value);
   header.set("X-Content-Type-Options", "nosniff");
-  header.set("Content-Security-Policy", "default-src 'none'; frame-ancestors 'none'");
+  // The page has a policy of its own.
+  if (header.find("Content-Security-Policy") == header.end())
+    header.set("Content-Security-Policy", "default-src 'none'; frame-ancestors 'none'");
   header.set("Referrer-Policy", "no-referrer");
+  header.set("Cross-Origin-Resource-Policy", "same-origin");
+  header.set("Cross-Origin-Opener-Policy", "same-origin");
 }
 
 void Connection::send_text(HttpResponse& response) {

@@ -56,6 +56,16 @@ TEST(HeaderFields, tokens) {
   EXPECT_FALSE(parse_bearer("Bearer " + std::string(201, 'a')));
 }
 
+TEST(HeaderFields, cookies) {
+  EXPECT_EQ(parse_session_cookie("__Host-prismesh=pm_0aZ"), "pm_0aZ");
+  EXPECT_EQ(parse_session_cookie("a=b; __Host-prismesh=pm_0aZ;c"), "pm_0aZ");
+  for (const char* bad : {"", "__Host-prismesh", "__Host-prismesh=", "__Host-prismesh=a b", "__Host-prismesh=\"a\"", "prismesh=a",
+                          "__host-prismesh=a", "x__Host-prismesh=a", "a=__Host-prismesh=a", "__Host-prismesh=a; __Host-prismesh=a"})
+    EXPECT_FALSE(parse_session_cookie(bad)) << bad;
+  EXPECT_EQ(session_cookie("pm_0", 60), "__Host-prismesh=pm_0; Path=/; Max-Age=60; Secure; HttpOnly; SameSite=Strict");
+  EXPECT_EQ(session_cookie("", 60), "__Host-prismesh=; Path=/; Max-Age=0; Secure; HttpOnly; SameSite=Strict");
+}
+
 TEST(HeaderFields, targets) {
   const auto target = parse_target("/models?name=a%20b+c&count=5&flag");
   ASSERT_TRUE(target);
@@ -83,8 +93,8 @@ TEST(RouteTable, finds_routes_by_whole_paths) {
   EXPECT_EQ(find_route("HEAD", "/models").route->operation, Operation::list_models);
   EXPECT_EQ(find_route("PUT", "/models").route, nullptr);
   EXPECT_EQ(find_route("PUT", "/models").allowed, "GET, HEAD, POST");
-  for (const char* none :
-       {"", "/", "/model", "/modelsx", "/models/", "/models//files/x", "/models/a/files/", "/models/a/files/b/c", "/uploads/"})
+  for (const char* none : {"", "/page", "/page/", "/model", "/modelsx", "/models/", "/models//files/x", "/models/a/files/",
+                           "/models/a/files/b/c", "/uploads/"})
     EXPECT_TRUE(find_route("GET", none).allowed.empty()) << none;
 }
 
