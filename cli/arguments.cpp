@@ -240,9 +240,10 @@ void add_measuring(Parser& parser) {
   const auto [measure_app, measure_options] =
       add_command<MeasureOptions>(parser, "measure", "measure between two nodes, or the angle and the radius at three", measure_nodes);
   names_file(measure_app->add_option("DECK", measure_options->deck, "the deck's main file"))->required();
-  measure_app->add_option("NODES", measure_options->nodes, "the ids of two or three nodes; the angle is at the second")
-      ->required()
-      ->expected(2, 3);
+  measure_app->add_option("A", measure_options->a, "the id of a node")->required();
+  measure_app->add_option("B", measure_options->b, "that of another node")->required();
+  measure_app->add_option_function<std::int64_t>(
+      "C", [options = measure_options](std::int64_t id) { options->c = id; }, "that of a third one; the angle is at B");
 
   const auto [section_app, section_options] =
       add_command<CrossSectionOptions>(parser, "cross-section", "cut the shells with a plane", cross_section);

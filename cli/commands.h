@@ -72,7 +72,8 @@ int distance(const DistanceOptions& options, const Common& common, const Context
 
 struct MeasureOptions {
   std::filesystem::path deck;
-  std::vector<std::int64_t> nodes;  ///< ids, two or three
+  std::int64_t a = 0, b = 0;  ///< ids of nodes
+  std::optional<std::int64_t> c;
 };
 int measure_nodes(const MeasureOptions& options, const Common& common, const Context& context);
 

@@ -51,8 +51,10 @@ int measure_nodes(const MeasureOptions& options, const Common& common, const Con
   const Result<mesh::document::Document> document = open_deck(options.deck, common, context);
   if (!document) return refuse(document.error());
   const mesh::Model& model = document->current().model;
+  std::vector<std::int64_t> ids{options.a, options.b};
+  if (options.c) ids.push_back(*options.c);
   std::vector<mesh::NodeIndex> nodes;
-  for (const std::int64_t id : options.nodes) {
+  for (const std::int64_t id : ids) {
     const mesh::NodeIndex node = model.find_node(id);
     if (!node.valid()) {
       // An expression of one id tells which ids there are near by.
@@ -67,7 +69,7 @@ int measure_nodes(const MeasureOptions& options, const Common& common, const Con
   if (common.json)
     context.out << measure_json(model, nodes, measures) << '\n';
   else
-    print_measures(context.out, options.nodes, measures, std::string(name(document->settings.length_unit)));
+    print_measures(context.out, ids, measures, std::string(name(document->settings.length_unit)));
   return kDone;
 }
 

@@ -10,6 +10,7 @@ uniform usampler2D connectivity;
 uniform mat2 clip_from_pixels, pixels_from_clip;
 uniform float min_pixels;
 uniform float mm_per_pixel;
+uniform int needed_level;
 out vec2 at;
 flat out vec4 ab, cd, mark;
 flat out vec2 before, middle;
@@ -22,6 +23,7 @@ void main() {
   ab = cd = mark = vec4(0.0);
   reach = 1.0;
   glyph_kind = glyph.y;
+  if (int(glyph.y >> 8) < needed_level) return;
   uvec4 nodes = texelFetch(connectivity, texel(glyph.x), 0);
   int count = nodes.z == nodes.w ? 3 : 4, k = int(glyph.y >> 5) & 3;
   vec4 place[4] = vec4[4](texelFetch(positions, texel(nodes.x), 0), texelFetch(positions, texel(nodes.y), 0),

@@ -25,9 +25,11 @@ enum class GlyphShape : std::uint8_t {
 };
 inline constexpr int kGlyphShapeCount = 9;
 
-/// Glyph::kind for the shaders: shape (four bits), failing, position on the shell (two bits).
+/// Glyph::kind for the shaders: shape (four bits), failing, position on the shell (two bits), level.
 inline constexpr std::uint32_t kFailingGlyph = 16;
 inline constexpr std::uint32_t kGlyphPlaceShift = 5;
+inline constexpr std::uint32_t kGlyphLevelShift = 8;  ///< above it the level (glyph_levels.h), eight bits
+inline constexpr std::uint32_t kShownAtEveryLevel = 255;
 inline constexpr std::uint32_t kMarkedGlyph = 15;  ///< instead of a shape: a frame around the shell that the view went to
 
 /// The shapes of the failing metrics if any fails, else of those that warn. `other` only if no other shape applies; a defect has only its

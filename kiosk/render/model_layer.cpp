@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "kiosk/render/glyph_levels.h"
+
 namespace prismesh::kiosk::render {
 
 using ipc::SnapshotArray;
@@ -25,6 +27,29 @@ void upload_instances(Instances& instances, const std::vector<Glyph>& values) {
   glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(bytes), values.data(), GL_DYNAMIC_DRAW);
   instances.count = values.size();
   instances.bytes_uploaded += bytes;
+}
+
+/// By node: 1 if it is a corner of a visible face that is selected, by itself or by all of its corners.
+std::vector<std::uint8_t> nodes_of_selected_faces(const ModelTable& table) {
+  std::vector<std::uint8_t> nodes_on(table.node_count(), 0);
+  mesh::ShellNodes nodes;
+  for (std::size_t s = 0; s < table.shell_count(); ++s)
+    if (table.shell(s, nodes) && (table.shell_selected(s) || table.corners_selected(nodes)) && table.shell_visible(s))
+      for (const mesh::NodeIndex node : nodes.node) nodes_on[node.value] = 1;
+  return nodes_on;
+}
+
+/// Chunks in which the arrays differ; what is beyond an end is 0.
+std::vector<std::uint32_t> chunks_that_differ(const std::vector<std::uint8_t>& a, const std::vector<std::uint8_t>& b) {
+  std::vector<std::uint32_t> chunks;
+  const std::size_t size = std::max(a.size(), b.size());
+  for (std::size_t begin = 0; begin < size; begin += mesh::kChunkSize)
+    for (std::size_t n = begin; n < std::min(begin + mesh::kChunkSize, size); ++n)
+      if ((n < a.size() ? a[n] : 0) != (n < b.size() ? b[n] : 0)) {
+        chunks.push_back(static_cast<std::uint32_t>(begin / mesh::kChunkSize));
+        break;
+      }
+  return chunks;
 }
 
 /// The median length of the first side of about 500 shells at even steps.
@@ -92,8 +117,17 @@ Result<void> ModelLayer::set_model(std::shared_ptr<const ModelSource> source) {
   if (const auto done = update_line_elements(first || changes->topology || changes->visibility); !done) return done;
   glyph_list_.update(*table_, changes->visibility, changes->topology, glyphs_of_damage_);
   const bool visible_nodes_changed = !visible_nodes_ && table_->any_hidden();
-  return selected_.update(*table_, textures_.origin(), changes->topology || changes->visibility || visible_nodes_changed,
-                          changes->moved_chunks, [this]() -> const std::vector<std::uint8_t>& { return visible_nodes(); });
+  const bool all = changes->topology || changes->visibility || visible_nodes_changed;
+  const auto visible = [this]() -> const std::vector<std::uint8_t>& { return visible_nodes(); };
+  if (const auto done = selected_.update(*table_, textures_.origin(), all, changes->moved_chunks, visible); !done) return done;
+  covered_.changed.clear();
+  if (all || !changes->marked_chunks.empty()) {
+    // Which nodes are on no selected face may change with the marks of any other chunk.
+    std::vector<std::uint8_t> nodes = selected_.count() > 0 ? nodes_of_selected_faces(*table_) : std::vector<std::uint8_t>();
+    covered_.changed = chunks_that_differ(covered_.nodes, nodes);
+    covered_.nodes = std::move(nodes);
+  }
+  return loose_.update(*table_, textures_.origin(), all, changes->moved_chunks, visible, &covered_);
 }
 
 Result<void> ModelLayer::set_levels(std::shared_ptr<const MadeLevels> made) {
@@ -185,6 +219,7 @@ Result<void> ModelLayer::choose_preview_glyphs(std::size_t cap) {
   if (previewing()) live = preview_->glyphs(glyphs_of_damage_);
   preview_glyphs_.left_out = live.size() - std::min(live.size(), cap);
   live.erase(live.begin(), live.begin() + static_cast<std::ptrdiff_t>(preview_glyphs_.left_out));  // failures come last and stay
+  for (Glyph& glyph : live) glyph.kind |= kShownAtEveryLevel << kGlyphLevelShift;  // what goes bad under the hand is always seen
   upload_instances(preview_glyphs_.instances, live);
   preview_glyphs_.stale = false;
   if (live.empty() || !preview_casting_.stale) return {};
@@ -204,6 +239,7 @@ Result<ModelLayer::Glyphs> ModelLayer::glyphs(std::size_t cap, bool damaged) {
     static const std::unordered_set<std::uint32_t> kNone;
     GlyphList::Chosen chosen;
     if (table_) chosen = glyph_list_.choose(*table_, cap - reserved, previewing() ? preview_->shells() : kNone);
+    if (table_) set_glyph_levels(*table_, typical_side_, chosen.glyphs);
     upload_instances(model_glyphs_.instances, chosen.glyphs);
     model_glyphs_.left_out = chosen.left_out;
     model_glyphs_.stale = false;
@@ -224,7 +260,8 @@ const Instances& ModelLayer::marked(mesh::ShellIndex shell) {
   mesh::ShellNodes nodes;
   const bool visible =
       table_ && shell.value < table_->shell_count() && table_->shell(shell.value, nodes) && table_->shell_visible(shell.value);
-  upload_instances(marked_, visible ? std::vector<Glyph>{{shell.value, kMarkedGlyph}} : std::vector<Glyph>{});
+  upload_instances(
+      marked_, visible ? std::vector<Glyph>{{shell.value, kMarkedGlyph | kShownAtEveryLevel << kGlyphLevelShift}} : std::vector<Glyph>{});
   return marked_;
 }
 
@@ -261,9 +298,10 @@ Result<ModelLayer::ShadowCaster> ModelLayer::shadow_caster() {
 std::size_t ModelLayer::bytes_uploaded() const {
   std::size_t bytes = model_glyphs_.instances.bytes_uploaded + preview_glyphs_.instances.bytes_uploaded + marked_.bytes_uploaded +
                       contact_.bytes_uploaded() + cut_curves_.bytes_uploaded();
-  for (const RowTexture* texture : {&textures_.positions(), &textures_.connectivity(), &textures_.surface(), &borders_.texture,
-                                    &creases_.texture, &line_elements_.texture, &selected_.texture(), &preview_positions_,
-                                    &preview_casting_.connectivity, &selection_casting_.connectivity, &preview_edges_.texture})
+  for (const RowTexture* texture :
+       {&textures_.positions(), &textures_.connectivity(), &textures_.surface(), &borders_.texture, &creases_.texture,
+        &line_elements_.texture, &selected_.texture(), &loose_.texture(), &preview_positions_, &preview_casting_.connectivity,
+        &selection_casting_.connectivity, &preview_edges_.texture})
     bytes += texture->bytes_uploaded();
   return bytes;
 }

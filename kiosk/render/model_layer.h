@@ -48,6 +48,8 @@ class ModelLayer {
   const LineSet& creases() const { return creases_; }
   const LineSet& line_elements() const { return line_elements_; }
   const SelectionRows& selected() const { return selected_; }
+  /// Those that are corners of no selected face.
+  const SelectionRows& loose() const { return loose_; }
 
   /// Starts a drag's preview: nodes that move and shells they touch. Until the first frame nothing is previewed.
   void begin_preview(std::span<const mesh::NodeIndex> nodes, std::span<const mesh::ShellIndex> shells);
@@ -121,7 +123,8 @@ class ModelLayer {
   LineSet borders_, creases_, line_elements_;
   std::vector<std::uint32_t> line_nodes_;
   std::vector<std::uint64_t> line_versions_;
-  SelectionRows selected_;
+  SelectionRows selected_, loose_;
+  SelectionRows::Covered covered_;  ///< corners of selected faces
   std::optional<PreviewPatch> preview_;
   RowTexture preview_positions_{kPositionTexel};
   LineSet preview_edges_;

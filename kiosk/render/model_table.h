@@ -38,6 +38,12 @@ class ModelTable {
     const std::size_t chunk = node / mesh::kChunkSize, at = node % mesh::kChunkSize;
     return chunk < node_marks_.size() && at < node_marks_[chunk].size() && (node_marks_[chunk][at] & mesh::document::kSelected) != 0;
   }
+  /// Whether all of these are selected, so that the face between them is.
+  bool corners_selected(const mesh::ShellNodes& nodes) const {
+    for (const mesh::NodeIndex node : nodes.node)
+      if (!node_selected(node.value)) return false;
+    return true;
+  }
   /// The part of a shell's state that it had when the deck was opened.
   mesh::quality::ShellState shell_was(std::size_t shell) const;
   /// Selected as a whole, not by its nodes.

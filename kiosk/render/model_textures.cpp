@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/parallel_for.h"
 #include "kiosk/render/palette.h"
@@ -21,6 +22,7 @@ struct ModelTextures::ShellRow {
   std::vector<std::array<std::uint32_t, 2>> surface;
   ShellChunk chunk;
   std::vector<std::uint32_t> depends_on;
+  std::vector<bool> selected_faces;
 };
 
 namespace {
@@ -79,12 +81,14 @@ Result<ModelChanges> ModelTextures::update(const ModelTable& table) {
   if (*connectivity || *surface) shell_versions_.clear();
 
   update_positions(table, changes);
+  update_marks(table, changes);
   update_shells(table, changes);
   return changes;
 }
 
 void ModelTextures::forget() {
   position_known_.clear();
+  mark_versions_.clear();
   shell_versions_.clear();
   hidden_.clear();
   node_count_ = shell_count_ = 0;
@@ -120,6 +124,16 @@ void ModelTextures::update_positions(const ModelTable& table, ModelChanges& chan
   }
 }
 
+void ModelTextures::update_marks(const ModelTable& table, ModelChanges& changes) {
+  const std::size_t chunks = table.source().chunk_count(SnapshotArray::node_marks);
+  mark_versions_.resize(chunks, std::numeric_limits<std::uint64_t>::max());
+  for (std::size_t c = 0; c < chunks; ++c)
+    if (const std::uint64_t version = table.source().chunk_version(SnapshotArray::node_marks, c); version != mark_versions_[c]) {
+      mark_versions_[c] = version;
+      changes.marked_chunks.push_back(static_cast<std::uint32_t>(c));
+    }
+}
+
 void ModelTextures::update_shells(const ModelTable& table, ModelChanges& changes) {
   const ModelSource& source = table.source();
   const std::size_t chunks = (table.shell_count() + kChunkSize - 1) / kChunkSize;
@@ -128,7 +142,11 @@ void ModelTextures::update_shells(const ModelTable& table, ModelChanges& changes
   const auto version = [&](SnapshotArray array, std::size_t c) {
     return c < source.chunk_count(array) ? source.chunk_version(array, c) : 0;
   };
-  std::vector<std::uint32_t> stale;
+  struct Stale {
+    std::uint32_t chunk = 0;
+    bool geometry = true;
+  };
+  std::vector<Stale> stale;
   for (std::uint32_t c = 0; c < chunks; ++c) {
     ShellVersions& known = shell_versions_[c];
     const std::uint64_t nodes = source.chunk_version(SnapshotArray::shell_nodes, c);
@@ -137,12 +155,18 @@ void ModelTextures::update_shells(const ModelTable& table, ModelChanges& changes
     const auto depends = [&](std::uint32_t moved) { return std::binary_search(known.depends_on.begin(), known.depends_on.end(), moved); };
     const bool same = known.known && known.nodes == nodes && known.look == look && !changes.visibility &&
                       std::none_of(changes.moved_chunks.begin(), changes.moved_chunks.end(), depends);
-    if (same) continue;
+    if (same) {
+      // A face is selected by its corners: the row's look may be another one, its geometry isn't.
+      if (std::any_of(changes.marked_chunks.begin(), changes.marked_chunks.end(), depends) &&
+          selected_faces(table, c) != known.selected_faces)
+        stale.push_back({c, false});
+      continue;
+    }
     if (!known.known || known.nodes != nodes) changes.topology = true;
     known.known = true;
     known.nodes = nodes;
     known.look = look;
-    stale.push_back(c);
+    stale.push_back({c, true});
   }
   // Rows are built on all cores, in batches, and uploaded from this thread.
   constexpr std::size_t kBatch = 64;
@@ -150,17 +174,29 @@ void ModelTextures::update_shells(const ModelTable& table, ModelChanges& changes
   for (std::size_t first = 0; first < stale.size(); first += kBatch) {
     const std::size_t count = std::min(kBatch, stale.size() - first);
     parallel_for(count, 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) rows[i] = build_row(table, stale[first + i]);
+      for (std::size_t i = begin; i < end; ++i) rows[i] = build_row(table, stale[first + i].chunk);
     });
     for (std::size_t i = 0; i < count; ++i) {
-      const std::size_t c = stale[first + i];
-      connectivity_.upload_row(c, std::as_bytes(std::span(rows[i].nodes)));
+      const std::size_t c = stale[first + i].chunk;
+      if (stale[first + i].geometry) {
+        connectivity_.upload_row(c, std::as_bytes(std::span(rows[i].nodes)));
+        ++changes.uploaded;
+      }
       surface_.upload_row(c, std::as_bytes(std::span(rows[i].surface)));
       shell_chunks_[c] = rows[i].chunk;
       shell_versions_[c].depends_on = std::move(rows[i].depends_on);
-      changes.uploaded += 2;
+      shell_versions_[c].selected_faces = std::move(rows[i].selected_faces);
+      ++changes.uploaded;
     }
   }
+}
+
+std::vector<bool> ModelTextures::selected_faces(const ModelTable& table, std::size_t c) {
+  const std::size_t begin = c * kChunkSize, end = std::min(begin + kChunkSize, table.shell_count());
+  std::vector<bool> selected(end - begin);
+  mesh::ShellNodes nodes;
+  for (std::size_t s = begin; s < end; ++s) selected[s - begin] = table.shell(s, nodes) && table.corners_selected(nodes);
+  return selected;
 }
 
 ModelTextures::ShellRow ModelTextures::build_row(const ModelTable& table, std::size_t c) const {
@@ -173,6 +209,7 @@ ModelTextures::ShellRow ModelTextures::build_row(const ModelTable& table, std::s
   ShellRow row;
   row.nodes.resize(end - begin);
   row.surface.resize(end - begin);
+  row.selected_faces = selected_faces(table, c);
   for (std::size_t s = begin; s < end; ++s) {
     const std::size_t i = s - begin;
     mesh::ShellNodes nodes;
@@ -187,7 +224,7 @@ ModelTextures::ShellRow ModelTextures::build_row(const ModelTable& table, std::s
     }
     std::uint32_t word = static_cast<std::uint32_t>(colour_of_part(table.shell_part(s).value, source.part_count())) |
                          static_cast<std::uint32_t>(entry(states, i).grade()) << shell_word::kGradeShift |
-                         ((entry(marks, i) & mesh::document::kSelected) != 0 ? shell_word::kSelected : 0) |
+                         ((entry(marks, i) & mesh::document::kSelected) != 0 || row.selected_faces[i] ? shell_word::kSelected : 0) |
                          std::min(table.shell_part(s).value, shell_word::kNoPart) << shell_word::kPartShift;
     if (!whole) {
       row.nodes[i] = {};

@@ -11,10 +11,11 @@ namespace prismesh::kiosk::render {
 
 /// What an update changed.
 struct ModelChanges {
-  bool topology = false;                    ///< shells, their nodes, or the number of nodes
-  bool visibility = false;                  ///< hidden parts
-  std::vector<std::uint32_t> moved_chunks;  ///< of positions, ascending
-  std::size_t uploaded = 0;                 ///< rows
+  bool topology = false;                     ///< shells, their nodes, or the number of nodes
+  bool visibility = false;                   ///< hidden parts
+  std::vector<std::uint32_t> moved_chunks;   ///< of positions, ascending
+  std::vector<std::uint32_t> marked_chunks;  ///< of nodes whose marks differ, ascending
+  std::size_t uploaded = 0;                  ///< rows
 };
 
 /// The first of two words for each shell in `surface`: colour, grade, marks. The second is the packed normal.
@@ -52,14 +53,17 @@ class ModelTextures {
     std::uint64_t nodes = 0;
     std::array<std::uint64_t, 3> look{};  ///< of parts, marks, quality
     bool known = false;
-    std::vector<std::uint32_t> depends_on;  ///< chunks of positions
+    std::vector<std::uint32_t> depends_on;  ///< chunks of nodes
+    std::vector<bool> selected_faces;       ///< by shell of the chunk: all corners are
   };
   struct ShellRow;
 
   void forget();
   void choose_origin(const ModelTable& table);
   void update_positions(const ModelTable& table, ModelChanges& changes);
+  void update_marks(const ModelTable& table, ModelChanges& changes);
   void update_shells(const ModelTable& table, ModelChanges& changes);
+  static std::vector<bool> selected_faces(const ModelTable& table, std::size_t chunk);
   ShellRow build_row(const ModelTable& table, std::size_t chunk) const;
 
   std::uint64_t document_ = 0;
@@ -70,6 +74,7 @@ class ModelTextures {
   std::vector<std::uint8_t> hidden_;
   std::vector<std::uint64_t> position_versions_;
   std::vector<bool> position_known_;
+  std::vector<std::uint64_t> mark_versions_;
   std::vector<ShellVersions> shell_versions_;
   std::vector<ShellChunk> shell_chunks_;
   RowTexture positions_{kPositionTexel};

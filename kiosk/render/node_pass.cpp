@@ -10,6 +10,7 @@ namespace {
 constexpr RadiusLimits kNodeRadius{4.2F, 1.3F, 0.26F};
 /// From this radius on nodes are octahedra with a dark rim. Smaller ones look like squares and are drawn as squares.
 constexpr float kMinRimmedRadius = 2.6F;
+constexpr double kMinSideOfDots = 15;  ///< of shells, in pixels: smaller ones have no dots on selected faces
 constexpr float kHiddenLight = 0.80F;  ///< brightness behind a surface: between any part's colour and white
 
 constexpr std::array<std::uint8_t, 24> kOctahedron{0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 4, 1, 0, 5, 2, 1, 5, 3, 2, 5, 0, 3, 5};
@@ -57,7 +58,9 @@ NodePass::NodePass(const Shaders& shaders)
     : octahedra_(make_solid(shaders.nodes, 6, kOctahedron)), squares_(make_solid(shaders.flat_nodes, 4, kSquare)) {}
 
 void NodePass::draw(const ModelLayer& model, const Frame& frame) const {
-  const SelectionRows& rows = model.selected();
+  // Far off, selected faces show by their tint; dots on each of their corners would bury the model.
+  const double side_pixels = model.typical_side() * frame.view.mm_per_unit / frame.eye.mm_per_pixel;
+  const SelectionRows& rows = side_pixels < kMinSideOfDots ? model.loose() : model.selected();
   if (rows.count() == 0) return;
   const float fitting = frame.fitting_radius(kNodeRadius, model.typical_side());
   const float radius = model.previewing() ? kNodeRadius.min_pixels : fitting;  // the preview's wireframe shows the moving nodes

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "kiosk/render/glyph_levels.h"
 #include "kiosk/render/handle_mesh.h"
 #include "kiosk/render/palette.h"
 
@@ -22,6 +23,7 @@ constexpr float kHemWidth = 1.1F;
 constexpr float kCutHalfWidth = 1.3F;
 /// A shell with a smaller radius on the screen is enlarged to this one for its glyph.
 constexpr RadiusLimits kGlyphRadius{9.0F, 5.0F, 0.7F};
+constexpr double kGlyphSpacing = 24;  ///< of glyphs that are shown, about
 constexpr float kTransparentOpacity = 0.3F;
 constexpr double kNearestMm = 50;        ///< what is nearer to the eye counts as at this distance, for its level of detail
 constexpr double kLinesTowardEye = 1.3;  ///< pixels: depth offset of lines from the surface they lie on
@@ -307,6 +309,8 @@ void ScenePass::draw_glyphs(const Picture& picture, ModelLayer& model, std::size
   if (picture.marked) batches.push_back({model.marked(*picture.marked), textures.positions(), textures.connectivity()});
   frame.set(shaders_.glyphs);
   shaders_.glyphs.set("min_pixels", frame.fitting_radius(kGlyphRadius, model.typical_side()));
+  const double spacing = kGlyphSpacing * frame.eye.mm_per_pixel / frame.view.mm_per_unit;
+  shaders_.glyphs.set("needed_level", static_cast<int>(needed_glyph_level(spacing)));
   shaders_.glyphs.set("warn_ink", kWarnColour);
   shaders_.glyphs.set("fail_ink", kFailColour);
   shaders_.glyphs.set("mark_ink", kInformationColour);

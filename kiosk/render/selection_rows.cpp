@@ -10,7 +10,7 @@ using ipc::SnapshotArray;
 using mesh::kChunkSize;
 
 Result<void> SelectionRows::update(const ModelTable& table, const mesh::Vec3& origin, bool all, std::span<const std::uint32_t> moved_chunks,
-                                   const std::function<const std::vector<std::uint8_t>&()>& visible) {
+                                   const std::function<const std::vector<std::uint8_t>&()>& visible, const Covered* covered) {
   const ModelSource& source = table.source();
   const std::size_t chunks = std::min(source.chunk_count(SnapshotArray::node_marks), source.chunk_count(SnapshotArray::positions));
   const Result<bool> anew = texture_.reserve(table.node_count(), "selected nodes");
@@ -22,7 +22,9 @@ Result<void> SelectionRows::update(const ModelTable& table, const mesh::Vec3& or
   for (std::size_t c = 0; c < chunks; ++c) {
     const std::uint64_t version = source.chunk_version(SnapshotArray::node_marks, c);
     const bool moved = std::binary_search(moved_chunks.begin(), moved_chunks.end(), static_cast<std::uint32_t>(c));
-    if (known_[c].known && known_[c].version == version && !(moved && chunks_[c].count > 0)) continue;
+    const bool others =
+        covered != nullptr && std::binary_search(covered->changed.begin(), covered->changed.end(), static_cast<std::uint32_t>(c));
+    if (known_[c].known && known_[c].version == version && !others && !(moved && chunks_[c].count > 0)) continue;
     known_[c] = {version, true};
     chunks_[c] = {};
     nodes.clear();
@@ -31,6 +33,7 @@ Result<void> SelectionRows::update(const ModelTable& table, const mesh::Vec3& or
     for (std::size_t node = begin; node < end; ++node) {
       if ((marks[node - begin] & mesh::document::kSelected) == 0) continue;
       if (table.any_hidden() && visible()[node] == 0) continue;
+      if (covered != nullptr && node < covered->nodes.size() && covered->nodes[node] != 0) continue;
       const mesh::Vec3 at = table.position(node) - origin;
       if (!finite(at)) continue;
       if (nodes.size() % kBlockSize == 0) chunks_[c].blocks.emplace_back();

@@ -21,11 +21,16 @@ class SelectionRows {
     std::vector<stereo::Box> blocks;  ///< around each kBlockSize nodes, relative to the model's origin
   };
 
+  struct Covered {
+    std::vector<std::uint8_t> nodes;       ///< by node: not 0 for those that are left out; beyond the end none is
+    std::vector<std::uint32_t> changed{};  ///< chunks of nodes in which others are than before, ascending
+  };
+
   /// Takes over a model. `all`: visibility or origin may have changed. `moved_chunks`: chunks of positions that differ, ascending.
-  /// `visible`: gives the visible nodes; called only if parts are hidden and a chunk changed. Errors: too large for the GPU, no graphics
-  /// memory.
+  /// `visible`: gives the visible nodes; called only if parts are hidden and a chunk changed. `covered`: nodes to leave out. Errors: too
+  /// large for the GPU, no graphics memory.
   Result<void> update(const ModelTable& table, const mesh::Vec3& origin, bool all, std::span<const std::uint32_t> moved_chunks,
-                      const std::function<const std::vector<std::uint8_t>&()>& visible);
+                      const std::function<const std::vector<std::uint8_t>&()>& visible, const Covered* covered = nullptr);
 
   std::size_t count() const { return count_; }
   const std::vector<Chunk>& chunks() const { return chunks_; }

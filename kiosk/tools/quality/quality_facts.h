@@ -25,8 +25,9 @@ struct QualityFacts {
   const ipc::Quality* figures = nullptr;  ///< null: not here yet
   bool stale = false;                     ///< of an older generation; newer figures are requested
   std::string metric;                     ///< the chosen metric; empty: all
-  bool damaged = false;
-  std::optional<std::size_t> error;  ///< the error that the view went to
+  bool damaged = false;                   ///< figures and errors are only of what edits made worse
+  std::string glyphs;                     ///< which are shown, in words
+  std::optional<std::size_t> error;       ///< the error that the view went to
   MendLimits limits{};
   std::string length_unit;
   std::optional<SizeFacts> sizes;

@@ -15,7 +15,7 @@ inline constexpr std::array kKeys = {
     input::KeyBinding{display::Key::left, false, false, command_of(QualityCommand::previous_error), input::Menu::mesh, "Left",
                       "back to the error before", input::kRepeats},
     input::KeyBinding{display::letter('J'), false, true, command_of(QualityCommand::damaged_only), input::Menu::mesh, "Shift+J",
-                      "glyphs and errors: all, or only what edits made worse"},
+                      "glyphs and errors: all, only what edits made worse, or no glyphs"},
     input::KeyBinding{display::letter('L'), true, false, command_of(QualityCommand::relax_selection), input::Menu::mesh, "Ctrl+L",
                       "relax the selected nodes", input::kAsksForEdit},
     input::KeyBinding{display::letter('L'), true, true, command_of(QualityCommand::relax_part), input::Menu::mesh, "Ctrl+Shift+L",

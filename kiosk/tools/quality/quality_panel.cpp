@@ -267,7 +267,7 @@ void commands_section(const QualityFacts& facts, PanelLayout& layout) {
 QualityActions quality_panel(const QualityFacts& facts, PanelLayout& layout) {
   QualityActions actions;
   panels::panel_title("Quality", facts.figures == nullptr || facts.stale ? "counting .." : "a row shows its histogram");
-  panels::check("only what edits made worse", facts.damaged, command_of(QualityCommand::damaged_only), layout);
+  panels::setting("glyphs", facts.glyphs, input::binding_of(kKeys, command_of(QualityCommand::damaged_only)), layout);
   if (facts.figures != nullptr) {
     metrics_section(facts, actions);
     if (!facts.metric.empty()) histogram(*facts.figures, actions);

@@ -35,7 +35,7 @@ void QualityTool::command(std::uint8_t number, const Pointer& pointer) {
     case QualityCommand::panel: toolkit::toggle_in_hand(context_, this); break;
     case QualityCommand::next_error: step_error(1); break;
     case QualityCommand::previous_error: step_error(-1); break;
-    case QualityCommand::damaged_only: show_damaged_only(!wish_.damaged); break;
+    case QualityCommand::damaged_only: next_glyphs(); break;
     case QualityCommand::relax_selection: relax(Scope::selection); break;
     case QualityCommand::relax_part: relax(Scope::part); break;
     case QualityCommand::relax_failed: relax(Scope::failed); break;
@@ -137,11 +137,18 @@ void QualityTool::panel_changed() {
   follow_figures();
 }
 
-void QualityTool::show_damaged_only(bool damaged_only) {
-  wish_.damaged = damaged_only;
+/// All, only damage, none. Figures and errors are of damage in the second case, else of all.
+void QualityTool::next_glyphs() {
+  const bool damaged = !wish_.damaged && !without_glyphs_;
+  without_glyphs_ = wish_.damaged;
+  context_.trace.line("glyphs " + glyph_words());
+  if (damaged == wish_.damaged) return;
+  wish_.damaged = damaged;
   leave_error();
   follow_figures();
 }
+
+std::string QualityTool::glyph_words() const { return without_glyphs_ ? "none" : wish_.damaged ? "only damage" : "all"; }
 
 void QualityTool::choose_metric(const std::string& metric) {
   wish_.metric = metric;
@@ -208,10 +215,13 @@ void QualityTool::go_to_error(std::size_t error) {
 
 void QualityTool::add_to_picture(render::Picture& picture) const {
   picture.damaged_only = wish_.damaged;
+  picture.quality_glyphs = picture.quality_glyphs && !without_glyphs_;
   picture.marked = marked_;
 }
 
-std::string QualityTool::glyphs_hidden() const { return wish_.damaged ? "glyphs only of what edits made worse" : ""; }
+std::string QualityTool::glyphs_hidden() const {
+  return without_glyphs_ ? "glyphs are off (Shift+J)" : wish_.damaged ? "glyphs only of what edits made worse" : "";
+}
 
 void QualityTool::act(const QualityAction& action) {
   if (const auto* metric = std::get_if<ChooseMetric>(&action))
@@ -262,6 +272,7 @@ void QualityTool::draw_panel(PanelLayout& layout) {
   facts.stale = !link_.up_to_date(wish_, context_.shown.snapshot->info().generation);
   facts.metric = wish_.metric;
   facts.damaged = wish_.damaged;
+  facts.glyphs = glyph_words();
   facts.error = error_;
   facts.limits = limits_;
   facts.length_unit = context_.shown.snapshot->info().length_unit;
@@ -286,7 +297,7 @@ void QualityTool::draw_options(panels::OptionRow& row) {
   row.command("nodes", key(QualityCommand::relax_selection));
   row.command("parts", key(QualityCommand::relax_part));
   row.command("failed", key(QualityCommand::relax_failed));
-  row.toggle("only damage", wish_.damaged, key(QualityCommand::damaged_only));
+  row.value("glyphs", glyph_words(), key(QualityCommand::damaged_only));
 }
 
 std::string QualityTool::setting_words() const {

@@ -56,7 +56,8 @@ class QualityTool final : public toolkit::Tool,
   void repair(mesh::document::Scope scope);
   void type_limit(MendLimit which);
   void enter_limit(MendLimit which, const std::string& text);
-  void show_damaged_only(bool damaged_only);
+  void next_glyphs();
+  std::string glyph_words() const;
   void choose_metric(const std::string& metric);
   void select_bar(const BarClicked& bar);
   void act(const QualityAction& action);
@@ -70,6 +71,7 @@ class QualityTool final : public toolkit::Tool,
   toolkit::ToolContext& context_;
   QualityLink link_;
   QualityLink::Wish wish_;
+  bool without_glyphs_ = false;
   std::optional<std::size_t> error_;  ///< the error that the view went to, by its place in the list
   std::int64_t error_shell_ = 0;      ///< its shell, by id
   std::int64_t error_node_ = 0;       ///< its node, by id; 0: it is of a shell
