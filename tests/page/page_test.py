@@ -334,6 +334,8 @@ class Page(unittest.TestCase):
         self.station.ask("session", "edit", json.dumps(SMALL_EDIT))
         self.station.ask("session", "save")
         tab.wait_for_text("edited from wing")
+        tab.wait(f"{self.model_card(sent)}.innerText.includes('19,243 nodes, 18,317 elements, 4 parts')")
+        self.shows_a_picture(sent)
         edited = self.newest("wing")
         self.assertNotEqual(edited, sent)
         out = self.folder / "edited"
@@ -345,6 +347,20 @@ class Page(unittest.TestCase):
         self.assertEqual(got, expected)
         self.assertNotEqual(got, self.fetch(sent))
         self.no_complaints(self.MISSES_FILES, self.LINE_IS_CUT)
+
+    def shows_a_picture(self, hash_):
+        """What `prismesh intake describe` has the kiosk draw; without a kiosk there is none."""
+        self.tab.run(f"[...{self.model_card(hash_)}.querySelectorAll('button')][0].focus()")
+        self.station.ask("intake", "describe", hash_)
+        if (PROGRAMS / "prismesh-kiosk").exists():
+            picture = f"{self.model_card(hash_)}.querySelector('img')"
+            self.tab.wait(f"{picture}?.complete && {picture}.naturalWidth === 320")
+            self.assertEqual(self.tab.run(f"{picture}.alt"), "Picture of wing")
+        self.assertTrue(self.tab.run("document.activeElement.textContent === 'Fetch'"), "news don't take the focus away")
+        if PICTURES:
+            self.tab.size(960, 900)
+            self.tab.run("scrollTo(0, 0)")
+            self.tab.picture(PICTURES / "catalogue.png")
 
     def test_everybody_can_use_it(self):
         """What assistive programs are told, the keyboard, contrast, narrow windows; in both schemes, unpaired and paired."""
