@@ -50,6 +50,7 @@ export class CatalogueSection {
   #typing;
   #events;
   #load_number = 0;
+  #isBehind = false; // an event came since the list was asked for
 
   // --- following ---
 
@@ -58,6 +59,7 @@ export class CatalogueSection {
     this.#events = events;
     const changed = (work) => (event) => {
       work(JSON.parse(event.data));
+      this.#isBehind = true;
       this.#showCount();
       this.#changed();
     };
@@ -83,12 +85,15 @@ export class CatalogueSection {
 
   async #load(skip) {
     const number = ++this.#load_number;
+    this.#isBehind = false;
     const query = new URLSearchParams({ skip, count: kPage });
     const words = byId("search-name").value.trim();
     if (words) query.set("name", words);
     try {
       const answer = await askUntilAnswered(() => ask("GET", `/models?${query}`), (isCut) => this.#heard(!isCut));
       if (number !== this.#load_number) return;
+      // The list may be of before an event that came while it was on its way.
+      if (this.#isBehind) return this.#load(skip);
       const { models } = JSON.parse(answer.text);
       if (skip === 0) {
         this.#models.clear();
