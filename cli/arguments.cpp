@@ -443,6 +443,8 @@ void add_intake(Parser& parser) {
       ->delimiter(',')
       ->check(CLI::IsMember({"read", "upload", "remove", "metrics"}));
   add("tokens", Action::tokens, "list the tokens");
+  add("describe", Action::describe, "read stored models in the sandbox, and give the catalogue their figures and pictures")
+      ->add_option("MODEL", options->name, "its name, or six digits or more of its hash (default: all that aren't described yet)");
   add("revoke", Action::revoke, "make a token void at once")->add_option("NAME", options->name, "the token's name")->required();
 }
 

@@ -184,10 +184,10 @@ int watch(const WatchOptions& options, const Common& common, const Context& cont
 
 /// The station's side: talks to a running prismesh-intake on this machine.
 struct IntakeOptions {
-  enum class Action : std::uint8_t { code, tokens, revoke };
+  enum class Action : std::uint8_t { code, tokens, revoke, describe };
   Action action = Action::tokens;
   std::optional<std::filesystem::path> runtime_directory;
-  std::string name;                                  ///< code: the token's, if it is fixed here; revoke
+  std::string name;  ///< code: the token's, if it is fixed here; revoke; describe: one model, by its name or the beginning of its hash
   std::vector<std::string> allow{"read", "upload"};  ///< code
 };
 int intake(const IntakeOptions& options, const Common& common, const Context& context);

@@ -3,6 +3,7 @@
 #include <variant>
 
 #include "cli/commands.h"
+#include "cli/describe_models.h"
 #include "cli/remote_json.h"
 #include "cli/report_text.h"
 #include "ipc/intake/client.h"
@@ -62,6 +63,8 @@ int intake(const IntakeOptions& options, const Common& common, const Context& co
   Result<void> done;
   if (!client)
     done = fail(client.error());
+  else if (options.action == IntakeOptions::Action::describe)
+    return describe_models(*client, options.name, common, context);
   else if (options.action == IntakeOptions::Action::code)
     done = make_code(*client, options, common, context);
   else if (options.action == IntakeOptions::Action::tokens)

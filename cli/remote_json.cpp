@@ -80,6 +80,12 @@ std::string forgotten_json(const std::string& station, bool token_is_void) {
 
 std::string revoked_json(const std::string& name) { return OrderedJson{{"revoked", printable(name)}}.dump(); }
 
+std::string described_json(const ipc::DescribeModel& told) {
+  return OrderedJson{{"model", told.model}, {"nodes", told.nodes}, {"elements", told.elements},         {"parts", told.parts},
+                     {"warn", told.warn},   {"fail", told.fail},   {"picture", !told.thumbnail.empty()}}
+      .dump();
+}
+
 std::string event_json(const std::string& kind, const std::string& model) {
   return OrderedJson{{"event", printable(kind)}, {"model", model}}.dump();
 }

@@ -19,6 +19,7 @@ std::string models_json(const std::string& station, std::span<const ipc::remote:
 std::string pushed_json(const std::string& station, const ipc::remote::Pushed& pushed);
 std::string pulled_json(const std::string& station, const ipc::remote::Pulled& pulled);
 std::string forgotten_json(const std::string& station, bool token_is_void);
+std::string described_json(const ipc::DescribeModel& told);
 std::string revoked_json(const std::string& name);
 std::string event_json(const std::string& kind, const std::string& model);
 std::string pairing_code_json(const ipc::MadePairingCode& made, const ipc::IntakeInfo& info);

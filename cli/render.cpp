@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "cli/commands.h"
+#include "cli/draw_picture.h"
 #include "cli/figures.h"
 #include "cli/open_deck.h"
 #include "cli/program_beside.h"
@@ -160,6 +161,27 @@ int wait_for(pid_t child, const Context& context) {
 
 }  // namespace
 
+Result<int> draw_picture(const mesh::document::Document& document, const std::filesystem::path& output,
+                         const std::vector<std::string>& more, int field, const Context& context) {
+  const Result<std::filesystem::path> kiosk = program_beside(kKiosk, "which draws pictures", "prismesh-station");
+  if (!kiosk) return fail(kiosk.error());
+  const auto sealed = seal(document);
+  if (!sealed) return fail(sealed.error());
+  std::vector<int> inherited = (*sealed)->descriptors();
+  std::string list;
+  for (const int descriptor : inherited) list += (list.empty() ? "" : ",") + std::to_string(descriptor);
+  std::vector<std::string> arguments{kKiosk, "--render", output.string(), "--snapshot-fds", list};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  if (field >= 0) inherited.push_back(field);
+  context.err.flush();
+  const Result<pid_t> child = start(*kiosk, arguments, inherited);
+  if (!child) return fail(child.error());
+  const int status = wait_for(*child, context);
+  if (WIFEXITED(status)) return WEXITSTATUS(status);
+  if (context.stop()) return fail(output.string(), "stopped; no picture was written");
+  return fail(kiosk->string(), "ended by signal " + std::to_string(WTERMSIG(status)) + "; no picture was written");
+}
+
 int render(const RenderOptions& options, const Common& common, const Context& context) {
   const auto refuse = [&](const Error& error) {
     say(context, error);
@@ -180,32 +202,18 @@ int render(const RenderOptions& options, const Common& common, const Context& co
     if (const auto selected = mesh::document::apply(*document, select); !selected) return refuse(selected.error());
   }
   say_warnings(context, *document);
-  const auto sealed = seal(*document);
-  if (!sealed) return refuse(sealed.error());
-  const std::vector<int> descriptors = (*sealed)->descriptors();
-  std::vector<int> inherited = descriptors;
-  std::string list;
-  for (const int descriptor : descriptors) list += (list.empty() ? "" : ",") + std::to_string(descriptor);
-
-  std::vector<std::string> arguments{kKiosk, "--render", options.output.string(), "--snapshot-fds", list};
-  arguments.insert(arguments.end(), options.passed_on.begin(), options.passed_on.end());
+  std::vector<std::string> arguments = options.passed_on;
   std::optional<SealedField> coloured;
   if (*wish) {
     Result<SealedField> field = seal_field(*document, **wish, options, context);
     if (!field) return refuse(field.error());
     coloured = std::move(*field);
     arguments.insert(arguments.end(), coloured->arguments.begin(), coloured->arguments.end());
-    inherited.push_back(coloured->values.get());
   } else if (options.colour) {
     arguments.insert(arguments.end(), {"--colour", *options.colour});
   }
-  context.err.flush();
-  const Result<pid_t> child = start(*kiosk, arguments, inherited);
-  if (!child) return refuse(child.error());
-  const int status = wait_for(*child, context);
-  if (WIFEXITED(status)) return WEXITSTATUS(status);
-  if (context.stop()) return refuse(Error{options.output.string(), 0, "stopped; no picture was written"});
-  return refuse(Error{kiosk->string(), 0, "ended by signal " + std::to_string(WTERMSIG(status)) + "; no picture was written"});
+  const Result<int> drawn = draw_picture(*document, options.output, arguments, coloured ? coloured->values.get() : -1, context);
+  return drawn ? *drawn : refuse(drawn.error());
 }
 
 }  // namespace prismesh::cli

@@ -4,6 +4,7 @@
 #include <thread>
 #include <utility>
 
+#include "base/base64.h"
 #include "base/log.h"
 #include "daemon/common/service.h"
 #include "ipc/intake/client.h"
@@ -76,6 +77,7 @@ struct Daemon::Impl final : daemon::Service<BusProtocol> {
 
   void request(ipc::ClientId client, std::uint64_t number, Request request, std::size_t) override {
     if (const auto* work = std::get_if<ipc::PublishWork>(&request)) return publish(client, number, *work);
+    if (const auto* found = std::get_if<ipc::DescribeModel>(&request)) return describe(client, number, *found);
     answer(client, number, std::visit([this](const auto& asked) { return this->answer_to(asked); }, request));
   }
 
@@ -90,8 +92,25 @@ struct Daemon::Impl final : daemon::Service<BusProtocol> {
     });
   }
 
+  void describe(ipc::ClientId client, std::uint64_t number, const ipc::DescribeModel& found) {
+    const auto malformed = [&](const char* sentence) { answer(client, number, ipc::Failed{"request", 0, sentence, {}}); };
+    const std::optional<ipc::store::ContentHash> model = ipc::store::parse_content_hash(found.model);
+    if (!model) return malformed("\"model\" is no hash of a model");
+    const std::optional<std::vector<std::byte>> picture = base64_decode(found.thumbnail);
+    if (!picture) return malformed("\"thumbnail\" must be base64");
+    intake->describe(*model, {found.nodes, found.elements, found.parts, found.warn, found.fail},
+                     std::string(reinterpret_cast<const char*>(picture->data()), picture->size()),
+                     [this, client, number](const Result<void>& described) {
+                       post([this, client, number, described] {
+                         if (described) return answer(client, number, ipc::Done{});
+                         answer(client, number, ipc::failed_from(described.error()));
+                       });
+                     });
+  }
+
   Answer answer_to(const ipc::IntakeHello&) { return ipc::Done{}; }
-  Answer answer_to(const ipc::PublishWork&) { return ipc::Done{}; }  // answered later
+  Answer answer_to(const ipc::PublishWork&) { return ipc::Done{}; }    // answered later
+  Answer answer_to(const ipc::DescribeModel&) { return ipc::Done{}; }  // answered later
   Answer answer_to(const ipc::GetIntake&) {
     return ipc::IntakeInfo{options.server.address + ":" + std::to_string(intake->port()), intake->fingerprint().hex(),
                            options.store.string(), options.work.string()};

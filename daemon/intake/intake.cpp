@@ -10,6 +10,7 @@
 
 #include "base/log.h"
 #include "daemon/intake/api/model_answers.h"
+#include "daemon/intake/api/thumbnail.h"
 #include "daemon/intake/store/publish_folder.h"
 #include "ipc/intake/pairing_code.h"
 #include "ipc/wire/server.h"
@@ -119,11 +120,16 @@ std::string Intake::make_pairing_code(const PairingOffer& offer) {
   return ipc::encode_pairing_code(code);
 }
 
-void Intake::describe(const ipc::store::ContentHash& model, const ipc::store::ModelFigures& figures, std::string thumbnail) {
-  impl_->store->run([impl = impl_.get(), model, figures, thumbnail = std::move(thumbnail)](Store& store) {
+void Intake::describe(const ipc::store::ContentHash& model, const ipc::store::ModelFigures& figures, std::string thumbnail,
+                      std::function<void(Result<void>)> then) {
+  if (!thumbnail.empty() && !is_thumbnail(thumbnail))
+    return then(fail("request", "\"thumbnail\" must be a PNG of at most " + std::to_string(kMaxThumbnailSide) + " pixels a side and " +
+                                    std::to_string(kMaxThumbnailBytes >> 10) + " KB"));
+  impl_->store->run([impl = impl_.get(), model, figures, thumbnail = std::move(thumbnail), then = std::move(then)](Store& store) {
     const Outcome<ipc::store::ModelRecord> record = store.describe(model, figures, thumbnail);
-    if (record) return impl->events.tell("described", model, model_json({*record, false}));
-    logging::warn("what was found in {} isn't kept: {}", model.hex(), record.error().error.text());
+    if (!record) return then(fail(record.error().error));
+    impl->events.tell("described", model, model_json({*record, false}));
+    then({});
   });
 }
 

@@ -38,8 +38,10 @@ class Intake {
   Access& access();
   /// A pairing code with the beginning of the fingerprint. An earlier one is void.
   std::string make_pairing_code(const PairingOffer& offer);
-  /// Says what a reader found in a model; the catalogue's followers are told.
-  void describe(const ipc::store::ContentHash& model, const ipc::store::ModelFigures& figures, std::string thumbnail);
+  /// Says what a reader found in a model; the catalogue's followers are told. `thumbnail`: a PNG; empty: the model keeps its own. On
+  /// another thread, which then calls `then`. Errors: no such model, no thumbnail (is_thumbnail), the disk.
+  void describe(const ipc::store::ContentHash& model, const ipc::store::ModelFigures& figures, std::string thumbnail,
+                std::function<void(Result<void>)> then);
 
   /// Publishes what became of a model in a folder of `work`; on another thread, which then calls `then`. Errors: those of publish_folder.
   void publish_work(const std::string& folder, const ipc::store::ContentHash& derived_from,

@@ -4,6 +4,7 @@
 #include <span>
 #include <utility>
 
+#include "base/log.h"
 #include "daemon/modeld/contacts_answer.h"
 #include "daemon/modeld/edit_preview.h"
 #include "ipc/wire/failure.h"
@@ -56,7 +57,10 @@ Outcome RequestHandler::open(const ipc::Open& request, const Progress& progress)
   const bool blocked = keeper_.is_blocked(request);
   if (!blocked && !request.stored.empty() && request.path.empty()) {
     const Result<ipc::Open> laid_out = models_.lay_out(request);
-    return laid_out ? open(*laid_out, progress) : Outcome{ipc::failed_from(laid_out.error()), {}, {}, {}};
+    if (!laid_out) return {ipc::failed_from(laid_out.error()), {}, {}, {}};
+    Outcome outcome = open(*laid_out, progress);
+    if (outcome.published) describe_stored(request.stored);
+    return outcome;
   }
   const Result<bool> done = keeper_.open(request, progress);
   if (!done) return failed_by_edits(done.error(), blocked);
@@ -178,7 +182,14 @@ void RequestHandler::give_back(ipc::Saved& saved) {
   }
   if (*model == from) return;
   keeper_.published_as(*model);
+  describe_stored(*model);
   saved.notes.push_back("published in the store as " + *model);
+}
+
+/// prismesh-intake reads no deck, so whoever has read one tells it. The model is as good without.
+void RequestHandler::describe_stored(const std::string& model) const {
+  if (const Result<void> told = models_.describe(model, mesh::document::count_model(keeper_.document())); !told)
+    logging::warn("what was found in {} isn't in the catalogue: {}", model, told.error().text());
 }
 
 Outcome RequestHandler::close(const ipc::Close& request) {

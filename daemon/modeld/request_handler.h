@@ -71,6 +71,7 @@ class RequestHandler {
   void show(const std::string& made_by, Outcome& outcome);
 
   void give_back(ipc::Saved& saved);
+  void describe_stored(const std::string& model) const;
 
   DocumentKeeper keeper_;
   StoredModels models_;

@@ -87,4 +87,13 @@ Result<std::string> StoredModels::give_back(const fs::path& deck, const std::str
   return published->model;
 }
 
+Result<void> StoredModels::describe(const std::string& model, const mesh::document::ModelCounts& counts) const {
+  Result<ipc::IntakeClient> intake = ipc::IntakeClient::connect(intake_, "prismesh-modeld");
+  if (!intake) return fail(intake.error());
+  const Result<ipc::IntakeAnswer> answer =
+      intake->call(ipc::DescribeModel{model, counts.nodes, counts.elements, counts.parts, counts.warn, counts.fail, {}});
+  if (!answer) return fail(answer.error());
+  return {};
+}
+
 }  // namespace prismesh::modeld

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "ipc/model/messages.h"
+#include "mesh/document/model_counts.h"
 
 namespace prismesh::modeld {
 
@@ -20,6 +21,8 @@ class StoredModels {
   Result<ipc::Open> lay_out(const ipc::Open& request) const;
   /// Publishes a deck that was laid out and saved. Returns the new model's hash. Errors: no intake; why it can't be published.
   Result<std::string> give_back(const std::filesystem::path& deck, const std::string& derived_from) const;
+  /// Tells the store's catalogue what was found in a model. Errors: no intake, no such model.
+  Result<void> describe(const std::string& model, const mesh::document::ModelCounts& counts) const;
 
  private:
   std::filesystem::path intake_;

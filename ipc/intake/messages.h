@@ -33,7 +33,17 @@ struct PublishWork {
   std::string work;          ///< the folder's name
   std::string derived_from;  ///< hash of the model that was laid out there
 };
-using IntakeRequest = std::variant<IntakeHello, GetIntake, MakePairingCode, GetTokens, RevokeToken, PublishWork>;
+/// Says what a reader found in a stored model; prismesh-intake itself reads no deck.
+struct DescribeModel {
+  std::string model;  ///< its hash
+  std::uint64_t nodes = 0;
+  std::uint64_t elements = 0;
+  std::uint64_t parts = 0;
+  std::uint64_t warn = 0;  ///< elements
+  std::uint64_t fail = 0;  ///< elements
+  std::string thumbnail;   ///< a small PNG in base64; empty: the model keeps the one it has
+};
+using IntakeRequest = std::variant<IntakeHello, GetIntake, MakePairingCode, GetTokens, RevokeToken, PublishWork, DescribeModel>;
 
 // --- answers (Failed and Done: ipc/wire/answers.h) ---
 struct IntakeWelcome {

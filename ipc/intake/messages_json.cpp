@@ -13,6 +13,9 @@ PRISMESH_MESSAGE(ipc::IntakeWelcome, "welcome", f("protocol", m.protocol), f("ve
 PRISMESH_MESSAGE(ipc::IntakeInfo, "intake", f("address", m.address), f("fingerprint", m.fingerprint), f("store", m.store),
                  f("work", m.work));
 PRISMESH_MESSAGE(ipc::PublishWork, "publish_work", f.required("work", m.work), f.required("derived_from", m.derived_from));
+PRISMESH_MESSAGE(ipc::DescribeModel, "describe_model", f.required("model", m.model), f.required("nodes", m.nodes),
+                 f.required("elements", m.elements), f.required("parts", m.parts), f.required("warn", m.warn), f.required("fail", m.fail),
+                 f("thumbnail", m.thumbnail));
 PRISMESH_MESSAGE(ipc::PublishedWork, "published_work", f("model", m.model));
 PRISMESH_MESSAGE(ipc::MadePairingCode, "pairing_code", f("code", m.code), f("lifetime_s", m.lifetime_s));
 PRISMESH_JSON_OBJECT(ipc::TokenInfo, f("name", m.name), f("scopes", m.scopes), f("made_s", m.made_s), f("expires_s", m.expires_s));

@@ -13,6 +13,7 @@ Role role_of(const MakePairingCode&) { return Role::edit; }
 Role role_of(const GetTokens&) { return Role::edit; }
 Role role_of(const RevokeToken&) { return Role::edit; }
 Role role_of(const PublishWork&) { return Role::offer; }
+Role role_of(const DescribeModel&) { return Role::offer; }
 
 }  // namespace
 

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "daemon/intake/api/pair_request.h"
+#include "daemon/intake/api/thumbnail.h"
 #include "daemon/intake/http/checks.h"
 #include "daemon/intake/http/fields.h"
 #include "daemon/intake/http/routes.h"
@@ -27,6 +28,7 @@ void read_value(std::string_view value) {
   if (const auto token = intake::parse_session_cookie(value)) require(!token->empty() && token->find(';') == std::string_view::npos);
   if (const auto host = intake::parse_host(value)) require(!host->empty() && host->find('/') == std::string::npos);
   if (const auto size = intake::parse_size(value)) require(*size <= 9223372036854775807u);
+  if (intake::is_thumbnail(value)) require(value.size() >= 57);
   intake::lists_tag(value, "\"a\"");
   if (const auto code = ipc::decode_pairing_code(value)) require(ipc::decode_pairing_code(ipc::encode_pairing_code(*code)) == *code);
   if (const auto pair = intake::parse_pair_request(value); !pair) require(!pair.error().message.empty());

@@ -260,6 +260,30 @@ TEST_F(PathBox, lists_models_of_the_store_while_nothing_is_typed) {
   EXPECT_TRUE(std::ranges::none_of(items_, [](const panels::ScreenItem& item) { return item.name == "file stored:aa"; }));
 }
 
+TEST(Shelf, says_how_to_pair_and_what_a_browser_must_show) {
+  ipc::IntakeInfo info;
+  info.address = "0.0.0.0:7443";
+  info.fingerprint = std::string(60, 'a') + "0123";
+  const std::vector<std::string> words = pairing_words({"YH00-XEMD-3596-BM9C-AQDX-456P-B3GK-AAYS", 300}, info);
+  ASSERT_EQ(words.size(), 4u);
+  EXPECT_THAT(words[0], HasSubstr("YH00-XEMD-3596-BM9C-AQDX-456P-B3GK-AAYS"));
+  EXPECT_THAT(words[1], testing::AllOf(HasSubstr("5 minutes"), HasSubstr("https://STATION:7443/")));
+  EXPECT_THAT(words[3], testing::AllOf(testing::StartsWith("aaaa aaaa "), testing::EndsWith("aaaa 0123")));
+  const std::vector<std::string> refused = ask_for_pairing("/nowhere/intake.sock");
+  ASSERT_EQ(refused.size(), 1u);
+  EXPECT_THAT(refused[0], testing::AllOf(HasSubstr("No pairing code"), HasSubstr("/nowhere/intake.sock")));
+}
+
+TEST_F(PathBox, asks_for_a_pairing_code_and_shows_it) {
+  facts_.shelf = {{std::string(kPairName), "Pair a computer or a browser with this station", "shows a code", false}};
+  open(folder_ / "car.k");
+  EXPECT_EQ(click(std::string(kPairName)), std::string(kPairName));
+  facts_.pairing = {"Code: YH00", "Good for one computer"};
+  open(folder_ / "car.k");
+  EXPECT_TRUE(
+      std::ranges::any_of(items_, [](const panels::ScreenItem& item) { return item.name == "pairing 0" && item.state == "Code: YH00"; }));
+}
+
 TEST_F(PathBox, lays_out_only_the_rows_in_sight_of_a_large_folder) {
   for (int i = 0; i < 3000; ++i) std::ofstream(folder_ / ("part_" + std::to_string(i) + ".k"));
   open(folder_ / "car.k");

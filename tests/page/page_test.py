@@ -301,6 +301,29 @@ class Page(unittest.TestCase):
             each.wait(f"{self.model_card(hash_)} === null")
         self.no_complaints(self.MISSES_FILES)
 
+    def test_news_that_come_while_the_list_is_on_its_way_are_kept(self):
+        self.paired("read", "upload")
+        tab = self.tab
+        first, second = (self.deck(name, {"a.k": 500}, seed) for seed, name in ((1, "first"), (2, "second")))
+        tab.choose_files("#files", [first / "a.k"])
+        tab.click("#set-send")
+        self.newest("a.k")
+        # Answers to what is listed from now on wait until the test lets them through.
+        tab.run(
+            """(() => { const own = window.fetch; window.held = new Promise((go) => { window.letGo = go; });
+                 window.fetch = async (path, ...rest) => { const answer = await own(path, ...rest);
+                   if (String(path).startsWith('/models?')) { window.isHeld = true; await window.held; } return answer; }; })()"""
+        )
+        tab.run("document.getElementById('search-name').dispatchEvent(new Event('input'))")
+        tab.wait("window.isHeld === true")
+        tab.choose_files("#files", [second / "a.k"])
+        tab.run("document.getElementById('set-name').value = 'late a.k'")
+        tab.click("#set-send")
+        hash_ = self.newest("late a.k")
+        tab.run("window.letGo()")
+        tab.run("new Promise((done) => setTimeout(done, 300))")
+        self.assertTrue(tab.run(f"{self.model_card(hash_)} !== null"))
+
     def test_a_revoked_browser_is_told(self):
         self.paired()
         self.station.ask("intake", "revoke", f"browser {self.line.port}")
@@ -334,6 +357,13 @@ class Page(unittest.TestCase):
         self.station.ask("session", "edit", json.dumps(SMALL_EDIT))
         self.station.ask("session", "save")
         tab.wait_for_text("edited from wing")
+        tab.wait(f"{self.model_card(sent)}.innerText.includes('19,243 nodes, 18,317 elements, 4 parts')")
+        for each in (sent, self.newest("wing")):
+            self.shows_a_picture(each)
+        if PICTURES:
+            self.tab.size(800, 900)
+            self.tab.run("document.querySelector('#uploads button').click(); document.activeElement.blur(); scrollTo(0, 0)")
+            self.tab.picture(PICTURES / "catalogue.png")
         edited = self.newest("wing")
         self.assertNotEqual(edited, sent)
         out = self.folder / "edited"
@@ -345,6 +375,16 @@ class Page(unittest.TestCase):
         self.assertEqual(got, expected)
         self.assertNotEqual(got, self.fetch(sent))
         self.no_complaints(self.MISSES_FILES, self.LINE_IS_CUT)
+
+    def shows_a_picture(self, hash_):
+        """What `prismesh intake describe` has the kiosk draw; without a kiosk there is none."""
+        self.tab.run(f"[...{self.model_card(hash_)}.querySelectorAll('button')][0].focus()")
+        self.station.ask("intake", "describe", hash_)
+        if (PROGRAMS / "prismesh-kiosk").exists():
+            picture = f"{self.model_card(hash_)}.querySelector('img')"
+            self.tab.wait(f"{picture}?.complete && {picture}.naturalWidth === 320")
+            self.assertEqual(self.tab.run(f"{picture}.alt"), "Picture of wing")
+        self.assertTrue(self.tab.run("document.activeElement.textContent === 'Fetch'"), "news don't take the focus away")
 
     def test_everybody_can_use_it(self):
         """What assistive programs are told, the keyboard, contrast, narrow windows; in both schemes, unpaired and paired."""

@@ -5,6 +5,7 @@
 #include "base/base64.h"
 #include "base/json/write.h"
 #include "daemon/intake/api/refusal.h"
+#include "daemon/intake/api/thumbnail.h"
 #include "daemon/intake/http/fields.h"
 #include "ipc/store/record_definition.h"
 
@@ -100,6 +101,7 @@ HttpResponse thumbnail_response(const Store& store, const FoundModel& found) {
   if (!found.record.thumbnail) return error_response(404, "there is no picture of this model");
   Outcome<std::string> picture = store.picture(*found.record.thumbnail);
   if (!picture) return refusal_response(picture.error());
+  if (!is_thumbnail(*picture)) return error_response(410, "the picture of this model is none; describe the model again");
   return {200,
           {{"Content-Type", "image/png"}, {"ETag", tag_of(*found.record.thumbnail)}, {"Cache-Control", "private, no-cache"}},
           std::move(*picture),

@@ -50,6 +50,7 @@ export class CatalogueSection {
   #typing;
   #events;
   #load_number = 0;
+  #isBehind = false; // an event came since the list was asked for
 
   // --- following ---
 
@@ -58,6 +59,7 @@ export class CatalogueSection {
     this.#events = events;
     const changed = (work) => (event) => {
       work(JSON.parse(event.data));
+      this.#isBehind = true;
       this.#showCount();
       this.#changed();
     };
@@ -83,12 +85,15 @@ export class CatalogueSection {
 
   async #load(skip) {
     const number = ++this.#load_number;
+    this.#isBehind = false;
     const query = new URLSearchParams({ skip, count: kPage });
     const words = byId("search-name").value.trim();
     if (words) query.set("name", words);
     try {
       const answer = await askUntilAnswered(() => ask("GET", `/models?${query}`), (isCut) => this.#heard(!isCut));
       if (number !== this.#load_number) return;
+      // The list may be of before an event that came while it was on its way.
+      if (this.#isBehind) return this.#load(skip);
       const { models } = JSON.parse(answer.text);
       if (skip === 0) {
         this.#models.clear();
@@ -123,9 +128,10 @@ export class CatalogueSection {
     const before = this.#models.get(record.model);
     const words = byId("search-name").value.trim().toLowerCase();
     if (isNew && !before && !record.name.toLowerCase().includes(words)) return;
-    const item = this.#card(record);
+    const item = before?.item ?? this.#card(record);
     this.#models.set(record.model, { record, item });
-    if (before) before.item.replaceWith(item);
+    // Its buttons stay: one may have the focus, or be at work.
+    if (before) item.querySelector(".about").replaceWith(this.#about(record));
     else if (isNew) byId("models").prepend(item);
     else byId("models").append(item);
     if (isNew) tell(`${record.name} was published by ${record.who}.`);
@@ -140,7 +146,7 @@ export class CatalogueSection {
     return this.#models.get(model)?.record.name ?? `model ${shortHash(model)}`;
   }
 
-  #card(record) {
+  #about(record) {
     const when = new Date(1000 * record.when_s);
     const facts = element(
       "p",
@@ -149,11 +155,16 @@ export class CatalogueSection {
       element("time", { dateTime: when.toISOString(), title: when.toLocaleString() }, ageText(record.when_s)),
       `, ${countText(record.files, "file", "files")}, ${sizeText(record.bytes)}, model ${shortHash(record.model)}`,
     );
+    const about = element("div", { className: "about" }, ...picture(record), facts);
+    if (record.derived_from) about.append(this.#lineage(record.derived_from));
+    if (record.figures) about.append(...figures(record.figures));
+    if (record.damaged) about.append(element("p", { className: "fault" }, "Damaged in the store. Send it again."));
+    return about;
+  }
+
+  #card(record) {
     const item = element("li", { className: "card model", id: `model-${record.model}` });
-    item.append(element("h3", {}, record.name), ...picture(record), facts);
-    if (record.derived_from) item.append(this.#lineage(record.derived_from));
-    if (record.figures) item.append(...figures(record.figures));
-    if (record.damaged) item.append(element("p", { className: "fault" }, "Damaged in the store. Send it again."));
+    item.append(element("h3", {}, record.name), this.#about(record));
     const state = element("p", { className: "state", role: "status" });
     item.append(element("p", { className: "row" }, ...this.#buttons(record, item, state)), state);
     return item;

@@ -100,7 +100,8 @@ void FilesTool::draw_dialog(int kind, bool opened, panels::PanelLayout& layout) 
   const auto dialog = static_cast<PathDialog>(kind);
   const std::string deck = context_.shown.snapshot ? context_.shown.snapshot->info().document : std::string();
   if (opened && dialog == PathDialog::open) shelf_ = read_shelf(context_.options.intake);
-  PathFacts facts{dialog, opened, deck, {}, {}, recent_decks(decks_.entries(), kRecentDecks), shelf_};
+  if (opened) pairing_.clear();
+  PathFacts facts{dialog, opened, deck, {}, {}, recent_decks(decks_.entries(), kRecentDecks), shelf_, pairing_};
   if (not_opened_ && dialog == PathDialog::open) {
     facts.tried = not_opened_->deck.string();
     facts.problem = not_opened_->why;
@@ -108,6 +109,11 @@ void FilesTool::draw_dialog(int kind, bool opened, panels::PanelLayout& layout) 
   const std::optional<std::string> entered = path_box(facts, entry_, layout);
   if (std::exchange(entry_.cancelled, false)) layout.ask([this] { toolkit::close_dialog(context_); });
   if (!entered) return;
+  if (*entered == kPairName) {
+    // The box stays and shows the code: it is read off while it is typed elsewhere.
+    layout.ask([this] { pairing_ = ask_for_pairing(context_.options.intake); });
+    return;
+  }
   layout.ask([this, dialog, path = *entered] { enter(dialog, path); });
   layout.ask([this] { toolkit::close_dialog(context_); });
 }

@@ -43,6 +43,7 @@ class FilesTool final : public toolkit::Tool, public toolkit::HasDialogs, public
   toolkit::HistoryFile decks_;
   PathEntry entry_;
   std::vector<BrowseRow> shelf_;                             ///< as of when the box was opened
+  std::vector<std::string> pairing_;                         ///< what is shown of a pairing code; empty: nothing
   std::string asked_;                                        ///< the path that was entered to be opened
   std::optional<link::WantedDeck::NotOpened> not_opened_{};  ///< shown in the box until another one is tried
 };

@@ -115,6 +115,13 @@ void foot(const PathFacts& facts, PathEntry& entry, panels::PanelLayout& layout)
     panels::small_line(panels::printable_lines(facts.problem), panels::kFailColour);
     panels::note_item(layout, "open problem", printable(facts.problem));
   }
+  for (std::size_t i = 0; i < facts.pairing.size(); ++i) {
+    if (i == 0)
+      ImGui::TextWrapped("%s", printable(facts.pairing[i]).c_str());
+    else
+      panels::small_line(printable(facts.pairing[i]), panels::kInformationColour);
+    panels::note_item(layout, "pairing " + std::to_string(i), printable(facts.pairing[i]));
+  }
   if (!browsed.problem.empty())
     panels::small_line(printable(browsed.problem), panels::kWarnColour);
   else

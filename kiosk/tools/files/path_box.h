@@ -15,12 +15,13 @@ enum class PathDialog : std::uint8_t { open, save_as, save_copy };
 
 struct PathFacts {
   PathDialog dialog = PathDialog::open;
-  bool opened = false;             ///< the dialog wasn't there the last time
-  std::string deck;                ///< path of the deck that is open; empty: none
-  std::string tried;               ///< a path that couldn't be opened, to go on with; empty: none
-  std::string problem;             ///< why
-  std::vector<RecentDeck> recent;  ///< newest first
-  std::vector<BrowseRow> shelf{};  ///< models of the store, newest first
+  bool opened = false;                 ///< the dialog wasn't there the last time
+  std::string deck;                    ///< path of the deck that is open; empty: none
+  std::string tried;                   ///< a path that couldn't be opened, to go on with; empty: none
+  std::string problem;                 ///< why
+  std::vector<RecentDeck> recent;      ///< newest first
+  std::vector<BrowseRow> shelf{};      ///< models of the store, newest first
+  std::vector<std::string> pairing{};  ///< lines about a pairing code; empty: none was asked for
 };
 
 /// What the box remembers from one layout to the next.

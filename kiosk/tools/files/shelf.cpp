@@ -59,8 +59,35 @@ std::vector<BrowseRow> read_shelf(const std::filesystem::path& intake_socket) {
   const Result<ipc::store::Reader> store = ipc::store::Reader::open(info->store);
   if (!store) return {};
   const Result<std::vector<ipc::store::ModelRecord>> records = store->records(kMostModels);
+  if (!records) return {};
   const auto now = std::chrono::system_clock::now().time_since_epoch();
-  return records ? shelf_of(*records, std::chrono::duration_cast<std::chrono::seconds>(now).count()) : std::vector<BrowseRow>();
+  std::vector<BrowseRow> rows = shelf_of(*records, std::chrono::duration_cast<std::chrono::seconds>(now).count());
+  rows.push_back({std::string(kPairName), "Pair a computer or a browser with this station", "shows a code", false});
+  return rows;
+}
+
+std::vector<std::string> pairing_words(const ipc::MadePairingCode& made, const ipc::IntakeInfo& info) {
+  std::string fingerprint;
+  for (std::size_t i = 0; i < info.fingerprint.size(); ++i)
+    fingerprint += (i > 0 && i % 4 == 0 ? " " : "") + std::string(1, info.fingerprint[i]);
+  return {"Code: " + made.code,
+          fmt::format("Good for one computer and {}. There: prismesh pair STATION CODE, or a browser at https://STATION:{}/",
+                      counted(static_cast<std::size_t>(made.lifetime_s / 60), "minute"), info.address.substr(info.address.rfind(':') + 1)),
+          "In a browser compare first: the SHA-256 of its certificate must be", fingerprint};
+}
+
+std::vector<std::string> ask_for_pairing(const std::filesystem::path& intake_socket) {
+  const auto refused = [](const Error& error) { return std::vector{"No pairing code: " + error.text()}; };
+  Result<ipc::IntakeClient> intake = ipc::IntakeClient::connect(intake_socket, "prismesh-kiosk", kPatience);
+  if (!intake) return refused(intake.error());
+  const Result<ipc::IntakeAnswer> told = intake->call(ipc::GetIntake{}, kPatience);
+  if (!told) return refused(told.error());
+  const Result<ipc::IntakeAnswer> answer = intake->call(ipc::MakePairingCode{"", {"read", "upload"}}, kPatience);
+  if (!answer) return refused(answer.error());
+  const auto* info = std::get_if<ipc::IntakeInfo>(&*told);
+  const auto* made = std::get_if<ipc::MadePairingCode>(&*answer);
+  if (info == nullptr || made == nullptr) return refused({"prismesh-intake", 0, "answered something else"});
+  return pairing_words(*made, *info);
 }
 
 }  // namespace prismesh::kiosk::tools::files

@@ -2,12 +2,15 @@
 #include <filesystem>
 #include <fstream>
 #include <optional>
+#include <span>
 #include <string>
 #include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/base64.h"
+#include "daemon/intake/api/thumbnail.h"
 #include "daemon/intake/daemon.h"
 #include "daemon/modeld/request_handler.h"
 #include "ipc/intake/client.h"
@@ -68,6 +71,12 @@ class StoredModel : public ::testing::Test {
                                   modeld::DeckSource({{}, test::programs_folder() / "prismesh-import"}),
                                   modeld::StoredModels(ipc::intake_socket_path(run_folder())));
   }
+  ipc::store::ModelRecord record_of(const ipc::store::ContentHash& model) const {
+    const auto reader = ipc::store::Reader::open(store_folder());
+    const auto found = reader ? reader->find(model) : tl::unexpected(reader.error());
+    EXPECT_TRUE(found) << found.error().text();
+    return found ? found->record : ipc::store::ModelRecord{};
+  }
   static ipc::Open stored(const std::string& hash) {
     ipc::Open open;
     open.stored = hash;
@@ -103,6 +112,7 @@ TEST_F(StoredModel, is_opened_edited_and_given_back_with_its_lineage) {
   const ipc::DocumentState opened = state_of(modeld.open(stored(model_.hex()), {}));
   EXPECT_EQ(opened.shells, 2u);
   EXPECT_EQ(opened.stored, model_.hex());
+  EXPECT_EQ(record_of(model_).figures, (ipc::store::ModelFigures{opened.nodes, 2, opened.parts, opened.counts.warn, opened.counts.fail}));
   EXPECT_TRUE(opened.path.starts_with((folder_.path() / "work").string())) << opened.path;
   modeld.edit(mesh::document::parse_edit(kLiftFirst).value());
   const ipc::Saved saved = saved_of(modeld.save({}));
@@ -209,6 +219,48 @@ TEST_F(StoredModel, is_published_from_its_own_folder_only) {
   const auto same = client->call(ipc::PublishWork{"mine", model_.hex()});
   ASSERT_TRUE(same) << same.error().text();
   EXPECT_EQ(std::get<ipc::PublishedWork>(*same).model, model_.hex()) << "nothing has changed";
+}
+
+/// A chunk of a PNG; its checksum is nobody's concern.
+std::string png_chunk(const std::string& type, const std::string& bytes) {
+  return std::string("\0\0\0", 3) + static_cast<char>(bytes.size()) + type + bytes + "crc.";
+}
+std::string png_of(int width, int height) {
+  const auto side = [](int pixels) { return std::string("\0\0", 2) + static_cast<char>(pixels >> 8) + static_cast<char>(pixels & 255); };
+  return "\x89PNG\r\n\x1a\n" + png_chunk("IHDR", side(width) + side(height) + std::string("\x08\x02\0\0\0", 5)) +
+         png_chunk("IDAT", "points") + png_chunk("IEND", "");
+}
+
+TEST(Thumbnails, are_small_pictures_from_their_signature_to_their_end) {
+  EXPECT_TRUE(is_thumbnail(png_of(320, 240)));
+  EXPECT_TRUE(is_thumbnail(png_of(1024, 1)));
+  const std::string good = png_of(320, 240);
+  for (std::size_t size = 0; size < good.size(); ++size) EXPECT_FALSE(is_thumbnail(good.substr(0, size))) << size;
+  for (const std::string& bad : {png_of(1025, 240), png_of(320, 1025), png_of(0, 1), good + "<script>", "<svg" + good,
+                                 good.substr(0, 8) + png_chunk("IDAT", "") + good.substr(8), std::string("GIF89a")})
+    EXPECT_FALSE(is_thumbnail(bad));
+  EXPECT_FALSE(is_thumbnail(good + std::string(kMaxThumbnailBytes, '\0')));
+}
+
+TEST_F(StoredModel, is_described_by_whoever_has_read_it) {
+  start_intake();
+  Result<ipc::IntakeClient> client = ipc::IntakeClient::connect(ipc::intake_socket_path(run_folder()), "test");
+  ASSERT_TRUE(client);
+  const std::string picture = png_of(320, 240);
+  const auto in_base64 = [](const std::string& bytes) { return base64_encode(std::as_bytes(std::span(bytes))); };
+  for (const ipc::DescribeModel& bad : {ipc::DescribeModel{"no hash", 1, 1, 1, 0, 0, {}},
+                                        {std::string(64, 'a'), 1, 1, 1, 0, 0, {}},
+                                        {model_.hex(), 1, 1, 1, 0, 0, "*"},
+                                        {model_.hex(), 1, 1, 1, 0, 0, in_base64("<script>")}})
+    EXPECT_FALSE(client->call(bad)) << bad.model << bad.thumbnail;
+  EXPECT_FALSE(record_of(model_).figures);
+  const auto told = client->call(ipc::DescribeModel{model_.hex(), 6, 2, 1, 1, 0, in_base64(picture)});
+  ASSERT_TRUE(told) << told.error().text();
+  EXPECT_EQ(record_of(model_).figures, (ipc::store::ModelFigures{6, 2, 1, 1, 0}));
+  EXPECT_EQ(record_of(model_).thumbnail, ipc::store::sha256(picture));
+  ASSERT_TRUE(client->call(ipc::DescribeModel{model_.hex(), 7, 2, 1, 1, 0, {}}));
+  EXPECT_EQ(record_of(model_).figures->nodes, 7u);
+  EXPECT_EQ(record_of(model_).thumbnail, ipc::store::sha256(picture)) << "it keeps its picture";
 }
 
 }  // namespace

@@ -36,6 +36,8 @@ TEST(IntakeRoles, who_watches_may_look_and_only_editors_let_others_in) {
   EXPECT_EQ(role_for(MakePairingCode{}), Role::edit);
   EXPECT_EQ(role_for(GetTokens{}), Role::edit);
   EXPECT_EQ(role_for(RevokeToken{}), Role::edit);
+  EXPECT_EQ(role_for(PublishWork{}), Role::offer);
+  EXPECT_EQ(role_for(DescribeModel{}), Role::offer);
 }
 
 PairingCode some_code() {

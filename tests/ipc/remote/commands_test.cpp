@@ -159,6 +159,27 @@ TEST_F(RemoteCommands, a_push_that_is_killed_goes_on_when_it_is_called_again) {
   EXPECT_EQ(read(path("back/sample.k")), read(deck));
 }
 
+TEST_F(RemoteCommands, describing_reads_stored_models_in_the_sandbox) {
+  pair_as("ann");
+  const Outcome pushed = prismesh({"push", write("plate.k", plate_text()), "--json"});
+  ASSERT_EQ(pushed.status, kDone) << pushed.err;
+  const std::string model = pushed.json().at("model");
+  ASSERT_EQ(prismesh({"push", write("none.k", "this is no deck\n")}).status, kFailed) << "the command reads it before it sends it";
+  const nlohmann::json info = prismesh({"info", path("plate.k"), "--json"}).json();
+  const Outcome described = prismesh({"intake", "describe", "--runtime-dir", path("run"), "--json"});
+  ASSERT_EQ(described.status, kDone) << described.err;
+  EXPECT_EQ(described.json().at("model"), model);
+  EXPECT_EQ(described.json().at("nodes"), info.at("nodes"));
+  EXPECT_EQ(described.json().at("parts"), info.at("parts").size());
+  const nlohmann::json listed = prismesh({"stations", "models", "--json"}).json().at("models").at(0);
+  EXPECT_EQ(listed.at("figures").at("elements"), described.json().at("elements"));
+  if (described.json().at("picture") == true) {
+    EXPECT_THAT(prismesh({"intake", "describe", "--runtime-dir", path("run")}).out, HasSubstr("all models are described"));
+  }
+  EXPECT_EQ(prismesh({"intake", "describe", "plate.k", "--runtime-dir", path("run")}).status, kDone) << "again, because it is asked for";
+  EXPECT_THAT(prismesh({"intake", "describe", "nothing", "--runtime-dir", path("run")}).err, HasSubstr("there is no such model"));
+}
+
 TEST_F(RemoteCommands, RealDecks) {
   const auto decks = test::real_decks();
   if (!decks) GTEST_SKIP() << "PRISMESH_MODELS doesn't name the real decks";
