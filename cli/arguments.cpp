@@ -255,7 +255,7 @@ void add_measuring(Parser& parser) {
             if (const auto plane = plane_from(text)) options->plane = *plane;
           },
           "x=120, y=.. or z=.., in the deck's length unit, or X,Y,Z,NX,NY,NZ: a point and a normal")
-      ->check(CLI::Validator([](const std::string& text) { return wrong_plane(text); }, "PLANE"))
+      ->check(CLI::Validator([](const std::string& text) { return wrong_plane(text); }, ""))
       ->required();
   add_optional(section_app, "--parts", section_options->parts, "only these parts, an expression, e.g. 3,7-9");
   add_optional(section_app, "-o,--output", section_options->output,

@@ -32,6 +32,10 @@ def options_of(text):
     return {name for line in re.findall(r"^  (-\S+)", text, re.MULTILINE) for name in line.split(",")}
 
 
+def section_heading(words):
+    return '\n.SS "' + " ".join(words).replace("-", "\\-") + '"\n'
+
+
 class Generated(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -60,12 +64,12 @@ class Generated(unittest.TestCase):
         for words, _ in self.helps:
             if len(words) > 1:
                 with self.subTest(command=words):
-                    self.assertIn(f'\n.SS "{" ".join(words)}"\n', self.page(words[0]))
+                    self.assertIn(section_heading(words), self.page(words[0]))
 
     def test_each_option_is_in_its_section(self):
         for words, text in self.helps:
             page = self.page(words[0])
-            heading = f'\n.SS "{" ".join(words)}"\n' if len(words) > 1 else "\n.SH OPTIONS\n"
+            heading = section_heading(words) if len(words) > 1 else "\n.SH OPTIONS\n"
             section = re.split(r"\n\.S[SH] ", page.partition(heading)[2])[0].replace("\\-", "-")
             for option in options_of(text) - ({"-h", "--help"} if len(words) > 1 else set()):
                 with self.subTest(command=words, option=option):
