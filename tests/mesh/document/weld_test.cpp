@@ -413,5 +413,79 @@ TEST_F(WeldEdit, new_cards_have_the_columns_and_line_ends_of_the_main_file) {
   EXPECT_EQ(beams(again).size(), 1u);
 }
 
+// --- Radioss ---
+
+/// Sheets as parts 1 and on, a spring of part 9 between them, whose ends two interfaces tie by a group each.
+std::string radioss_deck(int sheets = 2) {
+  std::string text =
+      "#RADIOSS STARTER\n/BEGIN\nwelds\n      2020         0\n                  Mg                  mm                   s\n"
+      "                  Mg                  mm                   s\n/NODE\n";
+  char line[128];
+  for (int part = 1; part <= sheets; ++part)
+    for (int j = 0; j <= 4; ++j)
+      for (int i = 0; i <= 24; ++i) {
+        std::snprintf(line, sizeof line, "%10d%20.6f%20.6f%20.6f\n", 1000 * part + 1 + i + 25 * j, 5.0 * i, 5.0 * j, 1.5 * (part - 1));
+        text += line;
+      }
+  text +=
+      "      8001                 5.0                10.0                 0.0\n      8002                 5.0                10.0          "
+      "       1.5\n";
+  for (int part = 1; part <= sheets; ++part) {
+    std::snprintf(line, sizeof line, "/SHELL/%d\n", part);
+    text += line;
+    for (int j = 0; j < 4; ++j)
+      for (int i = 0; i < 24; ++i) {
+        const int corner = 1000 * part + 1 + i + 25 * j;
+        std::snprintf(line, sizeof line, "%10d%10d%10d%10d%10d\n", 1000 * part + 1 + i + 24 * j, corner, corner + 1, corner + 26,
+                      corner + 25);
+        text += line;
+      }
+  }
+  return text +
+         "/SPRING/9\n      9001      8001      8002\n/PART/1\nlower\n         1         1\n/PART/2\nupper\n         1         1\n"
+         "/PART/3\nthird\n         1         1\n/PART/9\nspot welds\n         9         0\n"
+         "/PROP/SHELL/1\nsheet\n        24         0\n                 0.0\n         5         0                 1.5\n"
+         "/GRNOD/NODE/55\nlower ends\n      8001\n/GRNOD/NODE/56\nupper ends\n      8002\n/GRNOD/NODE/57\nno tie\n      8002\n"
+         "/INTER/TYPE2/1\nlower\n        55        61         0         1\n/INTER/TYPE2/2\nupper\n        56        62         0         "
+         "1\n"
+         "/SURF/PART/61\nlower\n         1\n/SURF/PART/62\nupper\n         2\n/END\n";
+}
+
+class RadiossWeld : public WeldEdit {
+ protected:
+  Document springs() const { return open_deck(folder / "welds_0000.rad", radioss_deck()); }
+};
+
+TEST_F(RadiossWeld, is_a_spring_of_the_same_part_whose_ends_are_tied_to_their_sheets) {
+  Document document = springs();
+  const EditReport report = weld(document, R"({"edit": "weld", "points": [[60, 10, 0], [80, 10, 1.5]], "like": "spring:9001"})");
+  EXPECT_EQ(report.elements_added, 2u);
+  const auto out = save(document, folder / "saved_0000.rad");
+  ASSERT_TRUE(out) << out.error().text();
+  const std::string after = content_of(folder / "saved_0000.rad");
+  EXPECT_THAT(after, HasSubstr("      9001      8001      8002\n      9002      8003      8004\n      9003      8005      8006\n"));
+  EXPECT_THAT(after, HasSubstr("lower ends\n      8001      8003      8005\n"));
+  EXPECT_THAT(after, HasSubstr("upper ends\n      8002      8004      8006\n"));
+  EXPECT_THAT(after, HasSubstr("no tie\n      8002\n"));
+  const Document again = open(folder / "saved_0000.rad", {}).value();
+  EXPECT_EQ(again.current().model.elements[static_cast<std::size_t>(ElementClass::discrete)]->size(), 3u);
+  weld(document, R"({"edit": "undo"})");
+  ASSERT_TRUE(save(document, folder / "undone_0000.rad"));
+  EXPECT_EQ(content_of(folder / "undone_0000.rad"), radioss_deck());
+}
+
+TEST_F(RadiossWeld, is_left_out_where_the_ties_of_its_example_hold_other_sheets) {
+  Document document = open_deck(folder / "welds_0000.rad", radioss_deck(3));
+  EXPECT_THAT(refusal(document, R"({"edit": "weld", "points": [[60, 10, 0]], "like": "spring:9001"})"),
+              HasSubstr("the ties of the existing weld hold part:1 and part:2, not part:3"));
+  EXPECT_EQ(weld(document, R"({"edit": "weld", "points": [[60, 10, 0]], "sheets": 2, "like": "spring:9001"})").elements_added, 1u);
+}
+
+TEST_F(RadiossWeld, without_an_example_is_refused_by_name) {
+  Document document = springs();
+  EXPECT_THAT(refusal(document, R"({"edit": "weld", "points": [[60, 10, 0]], "diameter": 5})"),
+              HasSubstr("this version makes no part of welds in radioss decks"));
+}
+
 }  // namespace
 }  // namespace prismesh::mesh::document
