@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <span>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -387,6 +388,37 @@ Result<void> add_welds(const Document& document, const WeldKind& kind, const std
   return deck::can_restructure(*document.deck, document.opened->model, model, {});
 }
 
+/// The parts in the set of sheets among the cards of a part that was made for welds, ascending.
+std::vector<std::int64_t> sheets_in_cards(const std::string& cards) {
+  std::istringstream lines(cards);
+  std::vector<std::int64_t> parts;
+  std::string line;
+  while (std::getline(lines, line) && line != "*SET_PART_LIST") {
+  }
+  std::getline(lines, line);  // the set's number
+  while (std::getline(lines, line) && !line.starts_with('*')) {
+    std::istringstream fields(line);
+    for (std::int64_t part = 0; fields >> part;) parts.push_back(part);
+  }
+  std::sort(parts.begin(), parts.end());
+  return parts;
+}
+
+/// Says which sheets the contact of the existing weld's part doesn't name.
+void note_untied(const Document& document, PartIndex part, const std::vector<PartIndex>& sheets, EditReport& report) {
+  const Model& model = document.current().model;
+  const std::vector<Part>& parts = *model.parts;
+  const bool is_added = model.topology_change && part.value >= model.topology_change->deck_parts;
+  const std::vector<std::int64_t> tied =
+      is_added ? sheets_in_cards(model.topology_change->added_parts[part.value - model.topology_change->deck_parts].cards)
+               : deck::parts_tied_with(*document.deck->references, parts[part.value].id);
+  if (tied.empty()) return;
+  for (const PartIndex sheet : sheets)
+    if (!std::binary_search(tied.begin(), tied.end(), parts[sheet.value].id))
+      report.notes.push_back(part_words(model, sheet) + " isn't among the parts to which a contact ties " + part_words(model, part) +
+                             ": welds there don't hold unless it is added");
+}
+
 /// Errors: what the edit asks for isn't made in this version, or contradicts itself.
 Result<void> check_form(const Document& document, const Weld& edit) {
   const std::string as = edit.as.value_or("beam");
@@ -425,6 +457,7 @@ Result<void> apply_edit(const Document& document, const Weld& edit, Generation& 
   if (const Result<void> open = refuse_locked(before, sheets, "welds"); !open) return open;
   if (kind)
     if (const Result<void> open = refuse_locked(before, {kind->part}, "elements"); !open) return open;
+  if (kind) note_untied(document, kind->part, sheets, report);
   if (!kind) {
     Result<WeldKind> made = make_part(document, edit, sheets, next);
     if (!made) return fail(made.error());

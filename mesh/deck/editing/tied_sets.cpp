@@ -30,6 +30,58 @@ bool is_tied(const References& references, const Referrer& set, int level) {
 
 }  // namespace
 
+namespace {
+
+/// Adds the ids of a list or range; false: a range too long to be listed.
+bool add_ids(const Reference& reference, std::vector<std::int64_t>& ids) {
+  constexpr std::int64_t kMaxListed = 100'000;
+  if ((reference.last - reference.first) / reference.step > kMaxListed) return false;
+  for (std::int64_t id = reference.first; id <= reference.last; id += reference.step) ids.push_back(id);
+  return true;
+}
+
+/// The parts that a tie names; nothing if it names something else too.
+std::vector<std::int64_t> parts_of_tie(const References& references, std::uint32_t tie) {
+  std::vector<std::int64_t> parts, sets;
+  for (const Reference& reference : references.all()) {
+    if (reference.referrer != tie) continue;
+    if (reference.referred == Referred::part ? !add_ids(reference, parts)
+                                             : reference.referred != Referred::part_set || !add_ids(reference, sets))
+      return {};
+  }
+  for (const Reference& member : references.all(Referred::part)) {
+    const Referrer& set = references.referrers()[member.referrer];
+    if (set.defines != Referred::part_set || std::find(sets.begin(), sets.end(), set.id) == sets.end()) continue;
+    if (member.takes_away || !add_ids(member, parts)) return {};
+  }
+  return parts;
+}
+
+}  // namespace
+
+std::vector<std::int64_t> parts_tied_with(const References& references, std::int64_t part) {
+  std::vector<std::uint32_t> ties;
+  for (const Reference& reference : references.naming(Referred::part, part)) {
+    const Referrer& card = references.referrers()[reference.referrer];
+    if (is_tie(card)) ties.push_back(reference.referrer);
+    if (card.defines != Referred::part_set || card.id <= 0) continue;
+    for (const Reference& use : references.naming(Referred::part_set, card.id))
+      if (is_tie(references.referrers()[use.referrer])) ties.push_back(use.referrer);
+  }
+  std::sort(ties.begin(), ties.end());
+  ties.erase(std::unique(ties.begin(), ties.end()), ties.end());
+  std::vector<std::int64_t> tied;
+  for (const std::uint32_t tie : ties) {
+    const std::vector<std::int64_t> parts = parts_of_tie(references, tie);
+    // A side that names nothing is everything; with one part alone the other side isn't by parts.
+    if (parts.size() < 2) return {};
+    tied.insert(tied.end(), parts.begin(), parts.end());
+  }
+  std::sort(tied.begin(), tied.end());
+  tied.erase(std::unique(tied.begin(), tied.end()), tied.end());
+  return tied;
+}
+
 std::vector<std::uint32_t> tied_sets_of(const References& references, std::int64_t node) {
   std::vector<std::uint32_t> sets;
   for (const Reference& reference : references.naming(Referred::node, node)) {

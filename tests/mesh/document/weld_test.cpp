@@ -314,6 +314,18 @@ TEST_F(WeldEdit, keeps_the_layout_of_its_example) {
                           "               90002                  90               80003               80004"));
 }
 
+TEST_F(WeldEdit, says_which_sheets_the_contact_of_its_example_does_not_name) {
+  const std::string by_parts =
+      kOneWeld.substr(0, kOneWeld.find("*SET_PART_LIST")) +
+      "*SET_PART_LIST\n        91\n         1         2\n*CONTACT_SPOTWELD\n        90        91         3         2\n\n\n";
+  Document document = deck(3, by_parts);
+  const EditReport two = weld(document, R"({"edit": "weld", "points": [[60, 10, 0]], "parts": "1,2", "like": "beam:90001"})");
+  EXPECT_THAT(two.notes, ElementsAre("1 weld added to part:90"));
+  const EditReport three = weld(document, R"({"edit": "weld", "points": [[80, 10, 0]], "like": "beam:90001"})");
+  ASSERT_EQ(three.notes.size(), 2u);
+  EXPECT_THAT(three.notes[0], HasSubstr("part:3 isn't among the parts to which a contact ties part:90"));
+}
+
 // --- without an example ---
 
 const std::string kNewPart = R"({"edit": "weld", "flange": {"at": [60, 10, 0]}, "pitch": 20, "diameter": 6, "yield_stress": 300})";
@@ -343,6 +355,15 @@ TEST_F(WeldEdit, makes_part_section_material_set_and_contact_where_there_is_no_e
   EXPECT_EQ(beams(again).size(), 6u);
   EXPECT_EQ((*again.current().model.parts)[beams(again).part[0].value].id, 4);
   EXPECT_EQ(again.current().relations->dependents.on_sheets.size(), 12u);
+}
+
+TEST_F(WeldEdit, says_which_sheets_the_contact_of_a_part_that_it_made_does_not_name) {
+  Document document = deck(3, "");
+  weld(document, R"({"edit": "weld", "points": [[60, 10, 0]], "parts": "1,2", "diameter": 6, "yield_stress": 300})");
+  EXPECT_THAT(weld(document, R"({"edit": "weld", "points": [[80, 10, 0]], "parts": "1,2", "like": "beam:1"})").notes,
+              ElementsAre("1 weld added to part:4"));
+  EXPECT_THAT(weld(document, R"({"edit": "weld", "points": [[90, 10, 0]], "like": "beam:1"})").notes[0],
+              HasSubstr("part:3 isn't among the parts to which a contact ties part:4"));
 }
 
 TEST_F(WeldEdit, takes_the_yield_stress_from_the_sheets_materials) {
