@@ -127,6 +127,12 @@ bool output_is_good(const Context& context) {
 }
 
 void print_edit(std::ostream& out, const mesh::document::EditReport& report) {
+  if (report.welded) {
+    out << report.edit << ": " << counted(report.welded->welds_added, "weld") << " added, " << counted(report.elements_added, "element")
+        << "; " << counted(report.welded->spots_left, "spot") << " left out\n";
+    for (const std::string& note : report.notes) out << "  " << printable(note) << '\n';
+    return;
+  }
   out << report.edit << ": " << counted(report.nodes_moved, "node") << " moved; warn " << report.before.warn << " -> " << report.after.warn
       << ", fail " << report.before.fail << " -> " << report.after.fail;
   if (report.clusters_before + report.clusters_after > 0)

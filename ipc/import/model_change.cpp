@@ -175,7 +175,7 @@ bool are_new(std::vector<std::int64_t> ids, const std::shared_ptr<const mesh::Id
 bool are_added(const std::vector<mesh::PlacedNode>& placed, std::size_t deck_nodes, std::size_t nodes) {
   std::size_t next = deck_nodes;
   for (const mesh::PlacedNode& each : placed) {
-    if (each.node.value < next || each.node.value >= nodes || each.joins_sets > 1) return false;
+    if (each.node.value < next || each.node.value >= nodes || each.joins > mesh::kJoinsTies) return false;
     next = each.node.value + 1;
   }
   return true;
@@ -250,7 +250,7 @@ void apply(const ModelChange& change, Model& model) {
   auto placed = change.placed.begin();
   for (std::size_t n = 0; n < change.node_ids.size(); ++n) {
     if (placed != change.placed.end() && placed->node.value == model.node_count())
-      mesh::add_placed_node(model, change.node_ids[n], change.node_positions[n], change.node_origins[n], (placed++)->joins_sets != 0);
+      mesh::add_placed_node(model, change.node_ids[n], change.node_positions[n], change.node_origins[n], (placed++)->joins);
     else
       mesh::add_node(model, change.node_ids[n], change.node_positions[n], change.node_origins[n]);
   }

@@ -173,6 +173,8 @@ class Findings {
           ranges_.add(at);
         continue;
       }
+      // The groups of Radioss don't say what they define (Referrer::defines).
+      if (is_set(referred) && deck_.format == Format::radioss) continue;
       note_missing(referred, *known.index, reference, at, is_set(referred) ? sets_ : undefined);
     }
     undefined.note(warnings_, "names-undefined-" + std::string(name(referred)), [&](const FindingPlace& place) {

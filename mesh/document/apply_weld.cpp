@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <span>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "mesh/connections/weld_spots.h"
 #include "mesh/deck/editing/new_ids.h"
 #include "mesh/deck/editing/text_changes.h"
+#include "mesh/deck/editing/tied_sets.h"
 #include "mesh/deck/formats/formats.h"
 #include "mesh/document/apply.h"
 #include "mesh/document/deck_relations.h"
@@ -46,9 +48,11 @@ struct WeldKind {
   ElementClass element_class = ElementClass::beam;
   PartIndex part;
   std::uint32_t example = kNoExample;  ///< as TopologyChange::element_examples
-  /// The nodes whose cards those of new nodes follow, and whose sets they join if `joins_sets`; nothing: those of the sheets.
-  std::optional<NodeOrigin> beside;
-  bool joins_sets = false;
+  /// The ends of the existing element, whose cards those of new nodes follow; nothing: those of the sheets.
+  std::optional<std::array<NodeIndex, 2>> ends;
+  std::array<PartIndex, 2> sheets;  ///< of its ends: the parts on which they lie; invalid: none
+  bool joins_sets = false;          ///< new nodes join the sets of the ends
+  bool tied_by_end = false;         ///< ties name its ends in sets of their own
 };
 
 /// "beam:9" as a class and an id.
@@ -81,6 +85,27 @@ Result<std::uint32_t> find_element(const Document& document, const NamedElement&
   return fail("", "weld: there is no " + words);
 }
 
+/// The deck's node whose sets an end's are.
+NodeIndex first_of_deck(const Model& model, NodeIndex node) {
+  while (is_added(model, node)) node = origin_of(model, node).parent[0];
+  return node;
+}
+
+/// Finds the sheets of the ends, and whether ties name one of the ends and not the other.
+void note_ends(const Document& document, WeldKind& kind) {
+  const Generation& now = document.current();
+  const std::vector<NodeOnSheet>& on_sheets = now.relations->dependents.on_sheets;
+  std::array<std::vector<std::uint32_t>, 2> ties;
+  for (std::size_t e = 0; e < 2; ++e) {
+    const NodeIndex end = (*kind.ends)[e];
+    const auto at =
+        std::lower_bound(on_sheets.begin(), on_sheets.end(), end, [](const NodeOnSheet& each, NodeIndex n) { return each.node < n; });
+    if (at != on_sheets.end() && at->node == end) kind.sheets[e] = now.model.shell_parts[at->shell.value];
+    if (kind.joins_sets) ties[e] = deck::tied_sets_of(*document.deck->references, now.model.node_ids[first_of_deck(now.model, end).value]);
+  }
+  kind.tied_by_end = ties[0] != ties[1];
+}
+
 Result<WeldKind> like_existing(const Document& document, const std::string& like) {
   const Model& model = document.current().model;
   const Result<NamedElement> named = parse_element(like);
@@ -95,12 +120,19 @@ Result<WeldKind> like_existing(const Document& document, const std::string& like
   if ((named->element_class != ElementClass::beam && named->element_class != ElementClass::discrete) || nodes.size() != 2)
     return fail("", "weld: " + words + " can't be the example: this version makes welds of beams and springs with two nodes");
   if (!block.part[*element].valid()) return fail("", "weld: " + words + " can't be the example: it has no part");
-  WeldKind kind{named->element_class, block.part[*element], *element, edge_origin(nodes[0], nodes[1]), true};
+  WeldKind kind;
+  kind.element_class = named->element_class;
+  kind.part = block.part[*element];
+  kind.example = *element;
+  kind.ends = {nodes[0], nodes[1]};
+  kind.joins_sets = true;
   const bool is_added = model.topology_change && *element >= model.topology_change->deck_elements[c];
-  if (!is_added) return kind;
-  kind.example = model.topology_change->element_examples[c][*element - model.topology_change->deck_elements[c]];
-  const PlacedNode* placed = placed_node(model, nodes[0]);
-  kind.joins_sets = placed != nullptr && placed->joins_sets != 0;
+  if (is_added) {
+    kind.example = model.topology_change->element_examples[c][*element - model.topology_change->deck_elements[c]];
+    const PlacedNode* placed = placed_node(model, nodes[0]);
+    kind.joins_sets = placed != nullptr && placed->joins != kJoinsNone;
+  }
+  note_ends(document, kind);
   return kind;
 }
 
@@ -189,8 +221,14 @@ struct WantedWeld {
 
 class SpotSearch {
  public:
-  SpotSearch(const Generation& generation, const Weld& edit, EditReport& report)
-      : generation_(generation), edit_(edit), report_(report), there_(generation, edit.pitch.value_or(0) / 2), all_(generation.model) {
+  /// `kind`: what the welds are like; null: a part that is made for them.
+  SpotSearch(const Generation& generation, const Weld& edit, const WeldKind* kind, EditReport& report)
+      : generation_(generation),
+        edit_(edit),
+        kind_(kind),
+        report_(report),
+        there_(generation, edit.pitch.value_or(0) / 2),
+        all_(generation.model) {
     report_.welded.emplace();
     options_.gap = edit.gap;
   }
@@ -247,6 +285,11 @@ class SpotSearch {
     for (const SheetAtSpot& sheet : sheets) middle += sheet.point / static_cast<double>(sheets.size());
     if (there_.near(middle) || std::any_of(sheets.begin(), sheets.end(), [&](const SheetAtSpot& s) { return there_.near(s.point); }))
       return leave(place, "a weld is there already, nearer than half the pitch");
+    if (kind_ != nullptr && kind_->tied_by_end)
+      for (const SheetAtSpot& sheet : sheets)
+        if (const PartIndex part = part_of(sheet); part != kind_->sheets[0] && part != kind_->sheets[1])
+          return leave(place, "the ties of the existing weld hold " + part_words(model, kind_->sheets[0]) + " and " +
+                                  part_words(model, kind_->sheets[1]) + ", not " + part_words(model, part));
     for (const SheetAtSpot& sheet : sheets) there_.add(sheet.point);
     welds.push_back({place, std::move(sheets)});
   }
@@ -275,6 +318,7 @@ class SpotSearch {
 
   const Generation& generation_;
   const Weld& edit_;
+  const WeldKind* kind_;
   EditReport& report_;
   connections::SpotOptions options_;
   WeldsThere there_;
@@ -309,16 +353,31 @@ NodeOrigin corner_origin(const Model& model, const SheetAtSpot& sheet) {
   return {{nearest, NodeIndex(), NodeIndex(), NodeIndex()}, {1, 0, 0, 0}};
 }
 
+/// What a new node's card follows: the example's end on the same part, if there is one, before the other.
+NodeOrigin origin_on(const Model& model, const WeldKind& kind, const SheetAtSpot& sheet) {
+  if (!kind.ends) return corner_origin(model, sheet);
+  const PartIndex part = model.shell_parts[sheet.shell.value];
+  const auto [first, second] = *kind.ends;
+  return kind.sheets[0] != part && kind.sheets[1] == part ? edge_origin(second, first) : edge_origin(first, second);
+}
+
+std::uint32_t joins_on(const Model& model, const WeldKind& kind, const SheetAtSpot& sheet) {
+  if (!kind.ends || !kind.joins_sets) return kJoinsNone;
+  const PartIndex part = model.shell_parts[sheet.shell.value];
+  return kind.tied_by_end && (kind.sheets[0] == part || kind.sheets[1] == part) ? kJoinsTies : kJoinsCommon;
+}
+
 /// A node on each sheet, and an element between each and the next.
 Result<void> add_welds(const Document& document, const WeldKind& kind, const std::vector<WantedWeld>& welds, Model& model) {
   deck::NewIds ids(*document.deck, model);
   for (const WantedWeld& weld : welds) {
     std::vector<NodeIndex> nodes;
     for (const SheetAtSpot& sheet : weld.sheets) {
-      const NodeOrigin origin = kind.beside ? *kind.beside : corner_origin(model, sheet);
-      const Result<std::int64_t> id = ids.placed_node(origin, kind.joins_sets);
+      const NodeOrigin origin = origin_on(model, kind, sheet);
+      const std::uint32_t joins = joins_on(model, kind, sheet);
+      const Result<std::int64_t> id = ids.placed_node(origin, joins);
       if (!id) return fail(id.error());
-      nodes.push_back(add_placed_node(model, *id, sheet.point, origin, kind.joins_sets));
+      nodes.push_back(add_placed_node(model, *id, sheet.point, origin, joins));
     }
     for (std::size_t n = 1; n < nodes.size(); ++n) {
       const Result<std::int64_t> id = ids.element(kind.element_class, kind.example);
@@ -329,6 +388,37 @@ Result<void> add_welds(const Document& document, const WeldKind& kind, const std
   return deck::can_restructure(*document.deck, document.opened->model, model, {});
 }
 
+/// The parts in the set of sheets among the cards of a part that was made for welds, ascending.
+std::vector<std::int64_t> sheets_in_cards(const std::string& cards) {
+  std::istringstream lines(cards);
+  std::vector<std::int64_t> parts;
+  std::string line;
+  while (std::getline(lines, line) && line != "*SET_PART_LIST") {
+  }
+  std::getline(lines, line);  // the set's number
+  while (std::getline(lines, line) && !line.starts_with('*')) {
+    std::istringstream fields(line);
+    for (std::int64_t part = 0; fields >> part;) parts.push_back(part);
+  }
+  std::sort(parts.begin(), parts.end());
+  return parts;
+}
+
+/// Says which sheets the contact of the existing weld's part doesn't name.
+void note_untied(const Document& document, PartIndex part, const std::vector<PartIndex>& sheets, EditReport& report) {
+  const Model& model = document.current().model;
+  const std::vector<Part>& parts = *model.parts;
+  const bool is_added = model.topology_change && part.value >= model.topology_change->deck_parts;
+  const std::vector<std::int64_t> tied =
+      is_added ? sheets_in_cards(model.topology_change->added_parts[part.value - model.topology_change->deck_parts].cards)
+               : deck::parts_tied_with(*document.deck->references, parts[part.value].id);
+  if (tied.empty()) return;
+  for (const PartIndex sheet : sheets)
+    if (!std::binary_search(tied.begin(), tied.end(), parts[sheet.value].id))
+      report.notes.push_back(part_words(model, sheet) + " isn't among the parts to which a contact ties " + part_words(model, part) +
+                             ": welds there don't hold unless it is added");
+}
+
 /// Errors: what the edit asks for isn't made in this version, or contradicts itself.
 Result<void> check_form(const Document& document, const Weld& edit) {
   const std::string as = edit.as.value_or("beam");
@@ -336,7 +426,7 @@ Result<void> check_form(const Document& document, const Weld& edit) {
   if (std::find(std::begin(kForms), std::end(kForms), as) == std::end(kForms))
     return fail("", "weld: \"as\" must be \"beam\", not \"" + as + "\"");
   if (as != "beam" && as != "spring")
-    return fail("", "weld: this version makes no welds as \"" + as + "\": it makes beams in LS-DYNA decks");
+    return fail("", "weld: this version makes no welds as \"" + as + "\": it makes beams in LS-DYNA decks and springs in Radioss decks");
   if (edit.like && edit.diameter)
     return fail("", "weld: \"diameter\" belongs to the section, which \"like\" takes from the existing weld; only one can be given");
   if (edit.like && (edit.density || edit.youngs_modulus || edit.poissons_ratio || edit.yield_stress))
@@ -359,7 +449,7 @@ Result<void> apply_edit(const Document& document, const Weld& edit, Generation& 
   const Result<std::vector<WeldLine>> lines = weld_places(document, edit, progress);
   if (!lines) return fail(lines.error());
   std::vector<WantedWeld> welds;
-  SpotSearch search(before, edit, report);
+  SpotSearch search(before, edit, kind ? &*kind : nullptr, report);
   for (const WeldLine& line : *lines) search.search(line, welds);
   if (welds.empty())
     return fail("", "weld: no weld can be made at any of " + counted(report.welded->spots_left, "spot") + ": " + search.first_reason());
@@ -367,6 +457,7 @@ Result<void> apply_edit(const Document& document, const Weld& edit, Generation& 
   if (const Result<void> open = refuse_locked(before, sheets, "welds"); !open) return open;
   if (kind)
     if (const Result<void> open = refuse_locked(before, {kind->part}, "elements"); !open) return open;
+  if (kind) note_untied(document, kind->part, sheets, report);
   if (!kind) {
     Result<WeldKind> made = make_part(document, edit, sheets, next);
     if (!made) return fail(made.error());

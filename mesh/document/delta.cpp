@@ -80,7 +80,7 @@ constexpr std::uint8_t kHasCriteria = 2;
 
 // Bits beside the number of an added node's parents.
 constexpr std::uint8_t kPlaced = 8;
-constexpr std::uint8_t kJoinsSets = 16;
+constexpr std::uint8_t kJoinsShift = 4;  ///< PlacedNode::joins stands in the two bits from here on
 
 /// Writes new entries one by one. None of them is removed: an edit doesn't remove what it adds.
 void write_added(const Model& before, const Model& model, DeltaWriter& out) {
@@ -89,9 +89,8 @@ void write_added(const Model& before, const Model& model, DeltaWriter& out) {
     out.number(static_cast<std::uint64_t>(model.node_ids[n]));
     const NodeOrigin& origin = origin_of(model, NodeIndex(n));
     const PlacedNode* placed = placed_node(model, NodeIndex(n));
-    out.byte(static_cast<std::uint8_t>(origin.count() | (placed == nullptr         ? 0
-                                                         : placed->joins_sets != 0 ? kPlaced | kJoinsSets
-                                                                                   : kPlaced)));
+    const std::uint32_t bits = placed == nullptr ? 0 : kPlaced | placed->joins << kJoinsShift;
+    out.byte(static_cast<std::uint8_t>(static_cast<std::uint32_t>(origin.count()) | bits));
     for (std::size_t p = 0; p < static_cast<std::size_t>(origin.count()); ++p) {
       out.number(origin.parent[p].value);
       out.bits(origin.weight[p]);
@@ -342,9 +341,11 @@ void read_added_nodes(DeltaReader& in, bool with_placed, Model& model) {
   for (std::uint64_t i = 0; i < count; ++i) {
     const std::int64_t id = read_id(in, *model.node_index);
     const std::uint8_t kind = in.byte();
-    const bool placed = (kind & kPlaced) != 0, joins_sets = (kind & kJoinsSets) != 0;
-    const int parents = kind & ~(kPlaced | kJoinsSets);
-    if (!in.ok() || parents < 1 || parents > 4 || (placed && !with_placed) || (joins_sets && !placed)) return in.refuse();
+    const bool placed = (kind & kPlaced) != 0;
+    const auto joins = static_cast<std::uint32_t>(kind >> kJoinsShift);
+    const int parents = kind & (kPlaced - 1);
+    if (!in.ok() || parents < 1 || parents > 4 || (placed && !with_placed) || joins > kJoinsTies || (joins != kJoinsNone && !placed))
+      return in.refuse();
     NodeOrigin origin;
     for (std::size_t p = 0; p < static_cast<std::size_t>(parents); ++p) {
       origin.parent[p] = read_node(in, model, model.node_count());
@@ -355,7 +356,7 @@ void read_added_nodes(DeltaReader& in, bool with_placed, Model& model) {
     for (int k = 0; k < 3; ++k) position[k] = in.bits();
     if (!in.ok() || !position.allFinite()) return in.refuse();
     if (placed)
-      add_placed_node(model, id, position, origin, joins_sets);
+      add_placed_node(model, id, position, origin, joins);
     else
       add_node(model, id, position, origin);
   }

@@ -85,9 +85,9 @@ NodeIndex add_node(Model& model, std::int64_t id, const Vec3& position, const No
   return node;
 }
 
-NodeIndex add_placed_node(Model& model, std::int64_t id, const Vec3& position, const NodeOrigin& origin, bool joins_sets) {
+NodeIndex add_placed_node(Model& model, std::int64_t id, const Vec3& position, const NodeOrigin& origin, std::uint32_t joins) {
   const NodeIndex node = add_node(model, id, position, origin);
-  own_topology_change(model).placed_nodes.push_back({node, joins_sets ? 1u : 0u});
+  own_topology_change(model).placed_nodes.push_back({node, joins});
   return node;
 }
 

@@ -32,10 +32,15 @@ NodeOrigin edge_origin(NodeIndex a, NodeIndex b, double weight_of_b = 0.5);
 /// The centre of a shell: all corners have the same weight.
 NodeOrigin centre_origin(const ShellNodes& shell);
 
+/// Which sets an added node joins that lies between no others.
+inline constexpr std::uint32_t kJoinsNone = 0;
+inline constexpr std::uint32_t kJoinsCommon = 1;  ///< it is used as the nodes of its origin are: those that name all of these
+inline constexpr std::uint32_t kJoinsTies = 2;    ///< these, and those that name the first of its origin and tie nodes to a sheet
+
 /// An added node that lies between no others: an end of a weld. Its origin are the nodes that its card follows.
 struct PlacedNode {
   NodeIndex node;
-  std::uint32_t joins_sets = 0;  ///< 1: it is used as the nodes of its origin are, and joins the sets that name all of these; else 0
+  std::uint32_t joins = kJoinsNone;
   bool operator==(const PlacedNode&) const = default;
 };
 
@@ -70,8 +75,8 @@ struct TopologyChange {
 /// the deck (mesh/deck/editing/new_ids.h).
 NodeIndex add_node(Model& model, std::int64_t id, const Vec3& position, const NodeOrigin& origin);
 
-/// Adds a node that lies between no others. Precondition: `joins_sets` as in PlacedNode.
-NodeIndex add_placed_node(Model& model, std::int64_t id, const Vec3& position, const NodeOrigin& origin, bool joins_sets);
+/// Adds a node that lies between no others. `joins`: as PlacedNode.
+NodeIndex add_placed_node(Model& model, std::int64_t id, const Vec3& position, const NodeOrigin& origin, std::uint32_t joins);
 
 /// Adds an element that is no shell; returns its index in its class. `example`: an element of the deck of this class, or kNoExample.
 std::uint32_t add_element(Model& model, ElementClass element_class, std::int64_t id, PartIndex part, std::span<const NodeIndex> nodes,

@@ -6,6 +6,7 @@
 1. `prismesh edit` puts 1,000 welds on the flanges of hatprofile, as a new part. Every line of the deck is still there, in order; each new beam
    has a node on each sheet, which the plane of a shell's text contains; every new number is new.
 2. The same welds are made in modeld, which is killed (SIGKILL); recovered, it saves the same bytes; after undo it saves the deck's.
+3. Made on the deck as one that nobody vouches for, which another process writes, they are saved as the same bytes.
 Exit status 77 where there are no models: the test is skipped.
 """
 import json
@@ -217,6 +218,14 @@ def main():
         daemon.kill(signal.SIGTERM)
         assert open(undone, "rb").read() == open(source, "rb").read(), "undone, another deck is saved"
         print("undone: the original's bytes are saved")
+        daemon = Modeld(modeld, prismesh, os.path.join(folder, "third"))
+        daemon.session("open", "--sandboxed", deck)
+        daemon.session("edit", "--script", script)
+        rewritten = os.path.join(folder, "rewritten", "hat.k")
+        daemon.session("save", rewritten)
+        daemon.kill(signal.SIGTERM)
+        assert open(rewritten, errors="surrogateescape", newline="").read() == after, "rewritten in a sandbox, another deck is saved"
+        print("rewritten in a sandbox: the same bytes are saved")
     finally:
         shutil.rmtree(folder, ignore_errors=True)
     return 0

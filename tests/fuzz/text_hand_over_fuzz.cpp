@@ -46,8 +46,10 @@ mesh::Model edited() {
   const mesh::NodeIndex middle = mesh::add_node(model, 9, {0.5, 0, 0}, mesh::edge_origin(mesh::NodeIndex(0), mesh::NodeIndex(1)));
   mesh::add_shell(model, 2, {{middle, mesh::NodeIndex(1), mesh::NodeIndex(2), mesh::NodeIndex(2)}}, mesh::ShellIndex(0));
   mesh::set_shell_nodes(model, mesh::ShellIndex(0), {{mesh::NodeIndex(0), middle, mesh::NodeIndex(2), mesh::NodeIndex(3)}});
-  const mesh::NodeIndex low = mesh::add_placed_node(model, 10, {0.2, 0.2, 0}, mesh::edge_origin(mesh::NodeIndex(0), middle), false);
-  const mesh::NodeIndex high = mesh::add_placed_node(model, 11, {0.2, 0.2, 1}, mesh::edge_origin(mesh::NodeIndex(0), middle), true);
+  const mesh::NodeIndex low =
+      mesh::add_placed_node(model, 10, {0.2, 0.2, 0}, mesh::edge_origin(mesh::NodeIndex(0), middle), mesh::kJoinsNone);
+  const mesh::NodeIndex high =
+      mesh::add_placed_node(model, 11, {0.2, 0.2, 1}, mesh::edge_origin(mesh::NodeIndex(0), middle), mesh::kJoinsTies);
   mesh::Part part;
   part.id = 90;
   mesh::add_element(model, mesh::ElementClass::beam, 5, mesh::add_part(model, part, {"*PART\nwelds\n"}), std::array{low, high},

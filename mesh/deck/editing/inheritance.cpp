@@ -14,6 +14,7 @@
 #include "mesh/deck/editing/new_ids.h"
 #include "mesh/deck/editing/referrer_text.h"
 #include "mesh/deck/editing/text_place.h"
+#include "mesh/deck/editing/tied_sets.h"
 #include "mesh/deck/text/number.h"
 
 namespace prismesh::mesh::deck {
@@ -159,13 +160,26 @@ Result<void> copy_singles(const ModelDifference& difference, const NewEntity& no
 
 // --- nodes and shells ---
 
+/// The deck's node that an added one comes from by the first of each origin.
+NodeIndex first_deck_ancestor(const Model& model, NodeIndex node) {
+  while (is_added(model, node)) node = origin_of(model, node).parent[0];
+  return node;
+}
+
 /// A node that lies between no others has no constraints of others, and joins sets only where it is used as others are.
 Result<void> plan_placed_node(const ModelDifference& difference, const PlacedNode& placed, ReferencePlan& plan) {
   const Model& model = difference.model;
   NewEntity entity{Referred::node, model.node_ids[placed.node.value], {}};
-  if (placed.joins_sets != 0)
+  if (placed.joins != kJoinsNone)
     for (const NodeIndex ancestor : deck_ancestors(model, placed.node)) entity.parents.push_back(model.node_ids[ancestor.value]);
-  return join_sets(difference, entity, plan);
+  if (Result<void> joined = join_sets(difference, entity, plan); !joined || placed.joins != kJoinsTies) return joined;
+  const References& references = *difference.deck.references;
+  const std::vector<std::uint32_t> common = sets_of_all_parents(references, entity);
+  const NodeIndex first = first_deck_ancestor(model, placed.node);
+  for (const std::uint32_t set : tied_sets_of(references, model.node_ids[first.value]))
+    if (set_among(references, common, set) == common.end())
+      if (Result<void> joined = join_set(difference, set, entity, plan); !joined) return joined;
+  return {};
 }
 
 /// An element that is no shell joins the sets of its example.

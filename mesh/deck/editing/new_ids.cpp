@@ -104,8 +104,8 @@ Result<NewIds::IdSearch> NewIds::node_search(const NodeOrigin& origin) const {
   return search;
 }
 
-Result<std::int64_t> NewIds::placed_node(const NodeOrigin& origin, bool joins_sets) {
-  if (joins_sets) return node(origin);
+Result<std::int64_t> NewIds::placed_node(const NodeOrigin& origin, std::uint32_t joins) {
+  if (joins != kJoinsNone) return node(origin);
   const Result<IdSearch> search = node_search(origin);
   return search ? find(*search) : fail(search.error());
 }

@@ -30,8 +30,8 @@ class NewIds {
   /// Errors: no id is left (with the file and what holds the others), or no card of the deck can be the new card's example.
   Result<std::int64_t> node(const NodeOrigin& origin);
   Result<std::int64_t> shell(ShellIndex parent);
-  /// For a node that lies between no others, with a card like those of its origin. `joins_sets`: as PlacedNode.
-  Result<std::int64_t> placed_node(const NodeOrigin& origin, bool joins_sets);
+  /// For a node that lies between no others, with a card like those of its origin. `joins`: as PlacedNode.
+  Result<std::int64_t> placed_node(const NodeOrigin& origin, std::uint32_t joins);
   /// For an element that is no shell. `example`: as TopologyChange::element_examples.
   Result<std::int64_t> element(ElementClass element_class, std::uint32_t example);
 

@@ -125,6 +125,7 @@ constexpr NamingRule kRules[] = {
     {"INIVEL/T+G"},
     {"INIVEL/TRA"},
     {"INTER"},
+    {"INTER/TYPE2", Naming::places, Referred::node_set, kFirstCard},  // the tied nodes; its other side is a surface
     {"IOFLAG"},
     {"KEY"},
     {"LEAK"},

@@ -28,6 +28,7 @@ struct NamingBlock {
 
 std::int64_t added_to(Referred referred, const IdOffsets& added) {
   if (referred == Referred::node || referred == Referred::sph) return added.node;
+  if (is_set(referred)) return added.set;
   return referred == Referred::part ? added.part : added.element;
 }
 

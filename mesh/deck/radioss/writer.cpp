@@ -5,6 +5,7 @@
 #include <set>
 
 #include "mesh/deck/radioss/block.h"
+#include "mesh/deck/radioss/element_writer.h"
 #include "mesh/deck/radioss/mesh_cards.h"
 #include "mesh/deck/radioss/references.h"
 #include "mesh/deck/radioss/shell_groups.h"
@@ -290,6 +291,14 @@ class Writer : public CardWriter {
   /// removed from it, and whether its successors are isn't known.
   Inheritance inheritance(const Referrer& card, Referred) const override {
     return card.keyword.substr(0, 2) == "GR" ? Inheritance::forbids : Inheritance::stays;
+  }
+
+  Result<ElementPlace> find_element(const Deck& deck, ElementClass element_class, std::int64_t id,
+                                    std::span<const std::int64_t> nodes) const override {
+    return radioss::find_element(deck, element_class, id, nodes);
+  }
+  Result<WrittenCard> element_like(std::string_view text, const ElementPlace& example, const ElementCard& element) const override {
+    return radioss::element_like(text, example, element);
   }
 
   std::int64_t largest_node_id(std::uint16_t style) const override { return largest_id(Style::of(style).width()); }

@@ -50,7 +50,8 @@ Result<WrittenCard> CardWriter::element_like(std::string_view, const ElementPlac
 }
 
 Result<std::pair<Part, std::string>> CardWriter::weld_part(const Deck& deck, const Model&, const WeldPart&) const {
-  return fail("", "this version makes no welds in " + std::string(name(deck.format)) + " decks: it makes beams in LS-DYNA decks");
+  return fail("", "this version makes no part of welds in " + std::string(name(deck.format)) +
+                      " decks, but in LS-DYNA decks; in Radioss decks \"like\" copies an existing spring");
 }
 
 Result<std::string> CardWriter::element_header(ElementClass) const { return fail("", "has no example to be written like"); }

@@ -118,8 +118,8 @@ TEST_F(ModelChange, that_does_not_fit_is_told) {
 void add_two_welds(Model& model) {
   std::vector<NodeIndex> ends;
   for (const std::int64_t id : {100, 101})
-    ends.push_back(
-        mesh::add_placed_node(model, id, {0.5, 0.5, static_cast<double>(id)}, mesh::edge_origin(NodeIndex(0), NodeIndex(1)), id == 101));
+    ends.push_back(mesh::add_placed_node(model, id, {0.5, 0.5, static_cast<double>(id)}, mesh::edge_origin(NodeIndex(0), NodeIndex(1)),
+                                         id == 101 ? mesh::kJoinsTies : mesh::kJoinsNone));
   mesh::Part part;
   part.id = 90;
   part.name = "spot welds";

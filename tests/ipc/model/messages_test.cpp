@@ -120,6 +120,7 @@ TEST(Messages, a_stopped_repair_survives_the_way) {
 
 TEST(Messages, what_was_separated_survives_the_way) {
   Edited edited;
+  edited.report.welded = mesh::document::Welded{5, 1, {{{1.5, 2, 3}, "a weld is there already"}}};
   edited.report.separated = mesh::document::Separated{3, 2, {{"part:1", "", "half through"}}, 1.5, 0.25, 0.75};
   const Result<FromDaemon> answer = decode_from_daemon(encode_answer(1, edited, 0));
   ASSERT_TRUE(answer) << answer.error().text();

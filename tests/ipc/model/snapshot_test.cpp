@@ -1,3 +1,4 @@
+#include <array>
 #include <cerrno>
 #include <map>
 #include <random>
@@ -385,6 +386,32 @@ TEST(Snapshot, draws_beams_and_the_outline_of_solids) {
   // 1 beam, 6 edges of the tetrahedron, 20 edges of two bricks together.
   EXPECT_EQ(view->size(SnapshotArray::line_parts), 1u + 6 + 20);
   EXPECT_EQ(view->size(SnapshotArray::line_nodes), 2 * (1u + 6 + 20));
+}
+
+TEST(Snapshot, draws_welds_that_an_edit_adds_and_lists_their_part) {
+  mesh::document::Document document = grid_document(9, 9);
+  SnapshotPublisher publisher;
+  Reader reader(publisher);
+  const auto before = reader.map(publisher.publish(document, false).value());
+  EXPECT_EQ(before->size(SnapshotArray::line_parts), 0u);
+  const std::size_t parts = before->info().parts.size();
+
+  auto next = std::make_shared<mesh::document::Generation>(document.current());
+  mesh::Part part;
+  part.id = 90;
+  const mesh::PartIndex welds = mesh::add_part(next->model, part, {"*PART\n"});
+  next->parts = std::make_shared<const std::vector<mesh::document::PartState>>(parts + 1);
+  const std::array<mesh::NodeIndex, 2> ends{mesh::NodeIndex(0), mesh::NodeIndex(50)};
+  mesh::add_element(next->model, mesh::ElementClass::beam, 1, welds, ends, mesh::kNoExample);
+  document.generations.push_back(next);
+  document.cursor = 1;
+  const auto after = reader.map(publisher.publish(document, false).value());
+  EXPECT_EQ(after->size(SnapshotArray::line_parts), 1u);
+  ASSERT_EQ(after->info().parts.size(), parts + 1);
+  EXPECT_EQ(after->info().parts.back().id, 90);
+
+  document.cursor = 0;
+  EXPECT_EQ(reader.map(publisher.publish(document, false).value())->size(SnapshotArray::line_parts), 0u);
 }
 
 SnapshotTable sound_table() {

@@ -314,6 +314,18 @@ TEST_F(WeldEdit, keeps_the_layout_of_its_example) {
                           "               90002                  90               80003               80004"));
 }
 
+TEST_F(WeldEdit, says_which_sheets_the_contact_of_its_example_does_not_name) {
+  const std::string by_parts =
+      kOneWeld.substr(0, kOneWeld.find("*SET_PART_LIST")) +
+      "*SET_PART_LIST\n        91\n         1         2\n*CONTACT_SPOTWELD\n        90        91         3         2\n\n\n";
+  Document document = deck(3, by_parts);
+  const EditReport two = weld(document, R"({"edit": "weld", "points": [[60, 10, 0]], "parts": "1,2", "like": "beam:90001"})");
+  EXPECT_THAT(two.notes, ElementsAre("1 weld added to part:90"));
+  const EditReport three = weld(document, R"({"edit": "weld", "points": [[80, 10, 0]], "like": "beam:90001"})");
+  ASSERT_EQ(three.notes.size(), 2u);
+  EXPECT_THAT(three.notes[0], HasSubstr("part:3 isn't among the parts to which a contact ties part:90"));
+}
+
 // --- without an example ---
 
 const std::string kNewPart = R"({"edit": "weld", "flange": {"at": [60, 10, 0]}, "pitch": 20, "diameter": 6, "yield_stress": 300})";
@@ -343,6 +355,15 @@ TEST_F(WeldEdit, makes_part_section_material_set_and_contact_where_there_is_no_e
   EXPECT_EQ(beams(again).size(), 6u);
   EXPECT_EQ((*again.current().model.parts)[beams(again).part[0].value].id, 4);
   EXPECT_EQ(again.current().relations->dependents.on_sheets.size(), 12u);
+}
+
+TEST_F(WeldEdit, says_which_sheets_the_contact_of_a_part_that_it_made_does_not_name) {
+  Document document = deck(3, "");
+  weld(document, R"({"edit": "weld", "points": [[60, 10, 0]], "parts": "1,2", "diameter": 6, "yield_stress": 300})");
+  EXPECT_THAT(weld(document, R"({"edit": "weld", "points": [[80, 10, 0]], "parts": "1,2", "like": "beam:1"})").notes,
+              ElementsAre("1 weld added to part:4"));
+  EXPECT_THAT(weld(document, R"({"edit": "weld", "points": [[90, 10, 0]], "like": "beam:1"})").notes[0],
+              HasSubstr("part:3 isn't among the parts to which a contact ties part:4"));
 }
 
 TEST_F(WeldEdit, takes_the_yield_stress_from_the_sheets_materials) {
@@ -411,6 +432,80 @@ TEST_F(WeldEdit, new_cards_have_the_columns_and_line_ends_of_the_main_file) {
           "*ELEMENT_BEAM\r\n                   1                   4                2126                2127                   0\r\n"));
   const Document again = open(folder / "saved.k", {}).value();
   EXPECT_EQ(beams(again).size(), 1u);
+}
+
+// --- Radioss ---
+
+/// Sheets as parts 1 and on, a spring of part 9 between them, whose ends two interfaces tie by a group each.
+std::string radioss_deck(int sheets = 2) {
+  std::string text =
+      "#RADIOSS STARTER\n/BEGIN\nwelds\n      2020         0\n                  Mg                  mm                   s\n"
+      "                  Mg                  mm                   s\n/NODE\n";
+  char line[128];
+  for (int part = 1; part <= sheets; ++part)
+    for (int j = 0; j <= 4; ++j)
+      for (int i = 0; i <= 24; ++i) {
+        std::snprintf(line, sizeof line, "%10d%20.6f%20.6f%20.6f\n", 1000 * part + 1 + i + 25 * j, 5.0 * i, 5.0 * j, 1.5 * (part - 1));
+        text += line;
+      }
+  text +=
+      "      8001                 5.0                10.0                 0.0\n      8002                 5.0                10.0          "
+      "       1.5\n";
+  for (int part = 1; part <= sheets; ++part) {
+    std::snprintf(line, sizeof line, "/SHELL/%d\n", part);
+    text += line;
+    for (int j = 0; j < 4; ++j)
+      for (int i = 0; i < 24; ++i) {
+        const int corner = 1000 * part + 1 + i + 25 * j;
+        std::snprintf(line, sizeof line, "%10d%10d%10d%10d%10d\n", 1000 * part + 1 + i + 24 * j, corner, corner + 1, corner + 26,
+                      corner + 25);
+        text += line;
+      }
+  }
+  return text +
+         "/SPRING/9\n      9001      8001      8002\n/PART/1\nlower\n         1         1\n/PART/2\nupper\n         1         1\n"
+         "/PART/3\nthird\n         1         1\n/PART/9\nspot welds\n         9         0\n"
+         "/PROP/SHELL/1\nsheet\n        24         0\n                 0.0\n         5         0                 1.5\n"
+         "/GRNOD/NODE/55\nlower ends\n      8001\n/GRNOD/NODE/56\nupper ends\n      8002\n/GRNOD/NODE/57\nno tie\n      8002\n"
+         "/INTER/TYPE2/1\nlower\n        55        61         0         1\n/INTER/TYPE2/2\nupper\n        56        62         0         "
+         "1\n"
+         "/SURF/PART/61\nlower\n         1\n/SURF/PART/62\nupper\n         2\n/END\n";
+}
+
+class RadiossWeld : public WeldEdit {
+ protected:
+  Document springs() const { return open_deck(folder / "welds_0000.rad", radioss_deck()); }
+};
+
+TEST_F(RadiossWeld, is_a_spring_of_the_same_part_whose_ends_are_tied_to_their_sheets) {
+  Document document = springs();
+  const EditReport report = weld(document, R"({"edit": "weld", "points": [[60, 10, 0], [80, 10, 1.5]], "like": "spring:9001"})");
+  EXPECT_EQ(report.elements_added, 2u);
+  const auto out = save(document, folder / "saved_0000.rad");
+  ASSERT_TRUE(out) << out.error().text();
+  const std::string after = content_of(folder / "saved_0000.rad");
+  EXPECT_THAT(after, HasSubstr("      9001      8001      8002\n      9002      8003      8004\n      9003      8005      8006\n"));
+  EXPECT_THAT(after, HasSubstr("lower ends\n      8001      8003      8005\n"));
+  EXPECT_THAT(after, HasSubstr("upper ends\n      8002      8004      8006\n"));
+  EXPECT_THAT(after, HasSubstr("no tie\n      8002\n"));
+  const Document again = open(folder / "saved_0000.rad", {}).value();
+  EXPECT_EQ(again.current().model.elements[static_cast<std::size_t>(ElementClass::discrete)]->size(), 3u);
+  weld(document, R"({"edit": "undo"})");
+  ASSERT_TRUE(save(document, folder / "undone_0000.rad"));
+  EXPECT_EQ(content_of(folder / "undone_0000.rad"), radioss_deck());
+}
+
+TEST_F(RadiossWeld, is_left_out_where_the_ties_of_its_example_hold_other_sheets) {
+  Document document = open_deck(folder / "welds_0000.rad", radioss_deck(3));
+  EXPECT_THAT(refusal(document, R"({"edit": "weld", "points": [[60, 10, 0]], "like": "spring:9001"})"),
+              HasSubstr("the ties of the existing weld hold part:1 and part:2, not part:3"));
+  EXPECT_EQ(weld(document, R"({"edit": "weld", "points": [[60, 10, 0]], "sheets": 2, "like": "spring:9001"})").elements_added, 1u);
+}
+
+TEST_F(RadiossWeld, without_an_example_is_refused_by_name) {
+  Document document = springs();
+  EXPECT_THAT(refusal(document, R"({"edit": "weld", "points": [[60, 10, 0]], "diameter": 5})"),
+              HasSubstr("this version makes no part of welds in radioss decks"));
 }
 
 }  // namespace

@@ -270,7 +270,7 @@ TEST(TopologyChange, elements_and_parts_are_added_behind_those_of_the_deck) {
   const Model before = test::make_model({{1, Vec3(0, 0, 0)}, {2, Vec3(1, 0, 0)}, {3, Vec3(1, 1, 0)}}, {{1, 7, {1, 2, 3, 3}}},
                                         {{ElementClass::beam, 5, 8, {1, 2}}});
   Model model = before;
-  const NodeIndex end = add_placed_node(model, 9, Vec3(0.5, 0.5, 0), edge_origin(NodeIndex(0), NodeIndex(1)), true);
+  const NodeIndex end = add_placed_node(model, 9, Vec3(0.5, 0.5, 0), edge_origin(NodeIndex(0), NodeIndex(1)), kJoinsCommon);
   Part part;
   part.id = 20;
   const PartIndex added_part = add_part(model, part, {"*PART\n"});
