@@ -21,7 +21,7 @@ constexpr std::uint32_t kNone = 0xffffffffU;
 struct End {
   std::uint32_t low = 0, high = 0;
   bool operator==(const End&) const = default;
-  auto operator<=>(const End&) const = default;
+  auto operator<=>(const End&) const = default;  // NOLINT(modernize-use-nullptr): the check mistakes the operator
 };
 
 /// The cut of a triangle.

@@ -104,7 +104,7 @@ void CuttingTool::flip() {
   set_plane(plane);
 }
 
-void CuttingTool::set_plane(std::optional<CutPlane> plane) {
+void CuttingTool::set_plane(const std::optional<CutPlane>& plane) {
   if (!plane && !plane_) return;
   plane_ = plane;
   drag_.reset();

@@ -81,7 +81,7 @@ class CuttingTool final : public toolkit::Tool,
   void next_axis();
   void across_view();
   void flip();
-  void set_plane(std::optional<CutPlane> plane);
+  void set_plane(const std::optional<CutPlane>& plane);
   void move_to(const mesh::Vec3& point);
   /// Cuts the shown model and hands the curves to the renderer.
   void cut();
