@@ -236,6 +236,16 @@ std::string wrong_plane(const std::string& text) {
   return plane_from(text) ? "" : "must be like x=120, or six numbers X,Y,Z,NX,NY,NZ: a point and a normal, not \"" + text + "\"";
 }
 
+void add_welds(Parser& parser) {
+  const auto [app, options] =
+      add_command<WeldsOptions>(parser, "welds", "check whether welds join the sheets that they are to join", welds);
+  names_file(app->add_option("DECK", options->deck, "the deck's main file"))->required();
+  app->add_option("--edge-distance", options->edge_distance, "tell welds nearer to a free edge, deck's length unit (default: 0)")
+      ->check(CLI::Validator([](const std::string& text) { return wrong_gap(text); }, "LENGTH"));
+  app->add_option("--pitch", options->pitch, "tell welds of the same sheets nearer to each other, deck's length unit (default: 0)")
+      ->check(CLI::Validator([](const std::string& text) { return wrong_gap(text); }, "LENGTH"));
+}
+
 void add_measuring(Parser& parser) {
   const auto [measure_app, measure_options] =
       add_command<MeasureOptions>(parser, "measure", "measure between two nodes, or the angle and the radius at three", measure_nodes);
@@ -499,6 +509,7 @@ Result<Action> parse_arguments(std::span<const std::string> args) {
   add_common(*parser);
   add_reading_commands(*parser);
   add_flanges(*parser);
+  add_welds(*parser);
   add_measuring(*parser);
   add_writing_commands(*parser);
   add_bench(*parser);

@@ -70,6 +70,13 @@ struct DistanceOptions {
 };
 int distance(const DistanceOptions& options, const Common& common, const Context& context);
 
+struct WeldsOptions {
+  std::filesystem::path deck;
+  double edge_distance = 0;  ///< of welds from free edges, at least; deck's length unit, as the pitch; 0: not checked
+  double pitch = 0;
+};
+int welds(const WeldsOptions& options, const Common& common, const Context& context);
+
 struct MeasureOptions {
   std::filesystem::path deck;
   std::int64_t a = 0, b = 0;  ///< ids of nodes

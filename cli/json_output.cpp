@@ -180,6 +180,13 @@ std::string distance_json(const Gap& gap) {
       .dump();
 }
 
+std::string welds_json(const mesh::document::WeldChecks& checks) {
+  Json list = Json::array();
+  for (const mesh::document::WeldFinding& finding : checks.findings)
+    list.push_back({{"kind", finding.kind}, {"words", finding.words}, {"at", point(finding.at)}});
+  return Json{{"welds", checks.welds}, {"findings", std::move(list)}}.dump();
+}
+
 std::string measure_json(const mesh::Model& model, std::span<const mesh::NodeIndex> nodes, const mesh::measure::NodeMeasures& measures) {
   Json ids = Json::array();
   for (const mesh::NodeIndex node : nodes) ids.push_back(model.node_ids[node.value]);

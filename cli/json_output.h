@@ -17,6 +17,7 @@
 #include "mesh/document/document.h"
 #include "mesh/document/edit_report.h"
 #include "mesh/document/journal.h"
+#include "mesh/document/weld_checks.h"
 #include "mesh/measure/cross_section.h"
 #include "mesh/measure/lengths.h"
 
@@ -30,6 +31,7 @@ std::string failed_edit_json(const std::string& edit, const std::string& reason)
 std::string replay_json(const std::vector<mesh::document::ReplayStep>& steps, const std::string& deck_hash, bool other_deck);
 std::string diff_json(const Difference& difference);
 std::string distance_json(const Gap& gap);
+std::string welds_json(const mesh::document::WeldChecks& checks);
 /// `nodes`: those that were measured.
 std::string measure_json(const mesh::Model& model, std::span<const mesh::NodeIndex> nodes, const mesh::measure::NodeMeasures& measures);
 std::string cross_section_json(const mesh::Model& model, const mesh::measure::CrossSection& section);

@@ -24,6 +24,10 @@ def weld(station):
         raise Stop(f"{report['welds_added']} welds were added, or a line of the deck isn't as it was")
     tell(f"  {report['welds_added']} welds like {LIKE} between those of parts {PARTS}, {PITCH} mm apart; {report['spots_left']} places have one already")
     tell(f"  {len(lines)} lines more in the deck, and no other is changed")
+    checked = figures("welds", welded)
+    if checked["findings"]:
+        raise Stop(checked["findings"][0]["words"])
+    tell(f"  all {checked['welds']} welds join their sheets")
     at = longest["at"]
     section = figures("cross-section", welded, "--plane", f"x={at[0]}", "-o", out / "section.csv")
     if section["length"] <= 0:

@@ -55,6 +55,21 @@ TEST_F(Cli, cross_section_prints_and_writes_curves) {
   EXPECT_NEAR(tilted["length"].get<double>(), std::sqrt(50.0), 1e-9) << "from (5, 0) to (0, 5), where it leaves the strip";
 }
 
+TEST_F(Cli, welds_are_checked) {
+  std::string text = bent_strip();
+  text.insert(text.find("*ELEMENT_SHELL"), node_card(901, 5, 5, 0) + node_card(902, 5, 5, 7));
+  text.insert(text.find("*END"), "*ELEMENT_BEAM\n       9       3     901     902       0\n");
+  const std::string deck = write("weld.k", text);
+  const Outcome outcome = prismesh({"welds", deck});
+  EXPECT_EQ(outcome.status, kDone) << outcome.err;
+  EXPECT_EQ(outcome.out, "1 weld, 1 finding\nloose-end 1\nbeam:9: node:902 lies 7 from the nearest sheet  at (5, 5, 3.5)\n");
+  const nlohmann::json said = prismesh({"welds", deck, "--json"}).json();
+  EXPECT_EQ(said["welds"], 1);
+  EXPECT_EQ(said["findings"][0]["kind"], "loose-end");
+  EXPECT_EQ(prismesh({"welds", write("none.k", bent_strip())}).out, "0 welds, 0 findings\n");
+  EXPECT_EQ(prismesh({"welds", deck, "--pitch", "-1"}).status, kWrongUsage);
+}
+
 TEST_F(Cli, cross_section_through_nothing_says_so) {
   const std::string deck = write("strip.k", bent_strip());
   EXPECT_EQ(prismesh({"cross-section", deck, "--plane", "x=1e300"}).out, "the plane cuts no shell\n");

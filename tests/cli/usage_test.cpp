@@ -11,8 +11,8 @@ TEST_F(Cli, version_and_help) {
   EXPECT_EQ(prismesh({"--version"}).out, "prismesh " PRISMESH_VERSION "\n");
   const Outcome help = prismesh({"--help"});
   EXPECT_EQ(help.status, kDone);
-  for (const char* command :
-       {"info", "check", "edit", "replay", "diff", "distance", "penetrations", "flanges", "measure", "cross-section", "sample", "bench"})
+  for (const char* command : {"info", "check", "edit", "replay", "diff", "distance", "penetrations", "flanges", "welds", "measure",
+                              "cross-section", "sample", "bench"})
     EXPECT_THAT(help.out, HasSubstr(command));
   const Outcome edit_help = prismesh({"edit", "--help"});
   EXPECT_EQ(edit_help.status, kDone);

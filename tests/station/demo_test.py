@@ -71,7 +71,7 @@ class Demo(unittest.TestCase):
         lines = [line for line in done.stdout.splitlines() if line and not line.startswith(" ")]
         words = [line.split()[0] for line in lines]
         self.assertEqual(words[: len(STEPS)], STEPS)
-        self.assertEqual(words[-6:], ["compared", "saved", "modeld", "doctor", "contact", "remote"])
+        self.assertEqual(words[-7:], ["compared", "saved", "modeld", "doctor", "contact", "joining", "remote"])
         return {line.split()[0]: line for line in lines}
 
     def test_the_sample_ends_with_none_failing(self):
