@@ -1,8 +1,10 @@
 #include <cstdint>
+#include <filesystem>
 #include <map>
 #include <ostream>
 #include <span>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -76,6 +78,10 @@ int cross_section(const CrossSectionOptions& options, const Common& common, cons
     left_out.assign(model.parts->size(), 1);
     for (const mesh::PartIndex part : chosen->parts) left_out[part.value] = 0;
   }
+  if (options.output)
+    for (const mesh::deck::SourceFile& file : document->deck->files)
+      if (std::error_code failed; std::filesystem::equivalent(file.path, *options.output, failed))
+        return refuse({options.output->string(), 0, "is a file of the deck; the curves need another one"});
   const Result<CrossSection> section = mesh::measure::cross_section(model, options.plane, left_out);
   if (!section) return refuse({"--plane", 0, section.error().message});
   say_warnings(context, *document);

@@ -123,7 +123,11 @@ void Editor::take_newest() {
   shown.snapshot = next;
   // What stays within comfortable depth is what is shown now.
   if (const stereo::Box box = context_.renderer.bounds(); !box.empty()) context_.view.view.bounds = stereo::sphere_around(box);
-  if (other_document) context_.selection.last_clicked.reset(), context_.selection.last_region.reset();
+  if (other_document) {
+    context_.selection.last_clicked.reset();
+    context_.selection.last_region.reset();
+    context_.pointed = {};  // it speaks of the old deck until the pointer moves
+  }
   toolkit::take_model(context_);
   if (!other_document) return;
   for (const auto& tool : tools_.all()) tool->document_changed();

@@ -26,8 +26,10 @@ void ToolSet::gesture(const input::Gesture& gesture) {
 }
 
 Under ToolSet::under(const input::Pixel& pixel) const {
-  for (const HasHandle* tool : with<HasHandle>())
-    if (const Under under = tool->under(pixel); under != Under::picture) return under;
+  // The last tool's first: where the arrow of a cut lies on the handle of a pull, the one that only looks is taken.
+  const auto& tools = with<HasHandle>();
+  for (auto tool = tools.rbegin(); tool != tools.rend(); ++tool)
+    if (const Under under = (*tool)->under(pixel); under != Under::picture) return under;
   return Under::picture;
 }
 

@@ -11,6 +11,7 @@
 
 #include "base/counted.h"
 #include "base/readable_number.h"
+#include "mesh/connections/sheet_reach.h"
 #include "mesh/connections/weld_spots.h"
 #include "mesh/deck/editing/new_ids.h"
 #include "mesh/deck/editing/text_changes.h"
@@ -213,6 +214,19 @@ class WeldsThere {
   std::map<std::array<std::int64_t, 3>, std::vector<Vec3>> cells_;
 };
 
+/// Welds that are nearer than this are one on the other: a hundredth of the shells' sides.
+double same_place(const Model& model) {
+  constexpr std::size_t kAsked = 500;
+  constexpr double kShare = 0.01;
+  double sum = 0;
+  std::size_t count = 0;
+  for (std::size_t s = 0; s < model.shell_count(); s += model.shell_count() / kAsked + 1)
+    if (const ShellIndex shell(s); !model.is_removed(shell)) {
+      if (const double side = connections::mean_side(model, shell); std::isfinite(side)) sum += side, ++count;
+    }
+  return count > 0 ? kShare * sum / static_cast<double>(count) : 0;
+}
+
 /// A weld to be made: the sheets that it joins, in order.
 struct WantedWeld {
   Vec3 at = Vec3::Zero();
@@ -227,7 +241,7 @@ class SpotSearch {
         edit_(edit),
         kind_(kind),
         report_(report),
-        there_(generation, edit.pitch.value_or(0) / 2),
+        there_(generation, edit.pitch ? *edit.pitch / 2 : same_place(generation.model)),
         all_(generation.model) {
     report_.welded.emplace();
     options_.gap = edit.gap;
@@ -284,7 +298,7 @@ class SpotSearch {
     Vec3 middle = Vec3::Zero();
     for (const SheetAtSpot& sheet : sheets) middle += sheet.point / static_cast<double>(sheets.size());
     if (there_.near(middle) || std::any_of(sheets.begin(), sheets.end(), [&](const SheetAtSpot& s) { return there_.near(s.point); }))
-      return leave(place, "a weld is there already, nearer than half the pitch");
+      return leave(place, edit_.pitch ? "a weld is there already, nearer than half the pitch" : "a weld is there already");
     if (kind_ != nullptr && kind_->tied_by_end)
       for (const SheetAtSpot& sheet : sheets)
         if (const PartIndex part = part_of(sheet); part != kind_->sheets[0] && part != kind_->sheets[1])
@@ -450,7 +464,10 @@ Result<void> apply_edit(const Document& document, const Weld& edit, Generation& 
   if (!lines) return fail(lines.error());
   std::vector<WantedWeld> welds;
   SpotSearch search(before, edit, kind ? &*kind : nullptr, report);
-  for (const WeldLine& line : *lines) search.search(line, welds);
+  for (const WeldLine& line : *lines) {
+    search.search(line, welds);
+    if (!line.note.empty()) report.notes.push_back(line.note);
+  }
   if (welds.empty())
     return fail("", "weld: no weld can be made at any of " + counted(report.welded->spots_left, "spot") + ": " + search.first_reason());
   const std::vector<PartIndex> sheets = parts_joined(before.model, welds);

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "base/counted.h"
 #include "base/file.h"
 #include "base/readable_number.h"
 #include "mesh/connections/read_points.h"
@@ -47,7 +48,15 @@ Result<std::vector<WeldLine>> on_flanges(const Document& document, const Weld& e
   const Result<std::vector<connections::Flange>> flanges = flanges_wanted(document.current(), wanted, "weld", progress);
   if (!flanges) return fail(flanges.error());
   std::vector<WeldLine> lines;
+  std::size_t too_short = 0;
+  const double longest = flanges->empty() ? 0 : std::max_element(flanges->begin(), flanges->end(), [](const auto& a, const auto& b) {
+                                                  return a.length < b.length;
+                                                })->length;
   for (const connections::Flange& flange : *flanges) {
+    if (const double pitch = edit.pitch.value_or(0); pitch > flange.length && pitch <= longest) {
+      ++too_short;  // beside others that aren't
+      continue;
+    }
     if (!(flange.mean_width > 0)) return fail("", "weld: the flange there has no width");
     const Result<connections::SpotSpacing> spacing = spacing_on(edit, "the flange", flange.length);
     if (!spacing) return fail(spacing.error());
@@ -59,6 +68,7 @@ Result<std::vector<WeldLine>> on_flanges(const Document& document, const Weld& e
     line.parts.erase(std::unique(line.parts.begin(), line.parts.end()), line.parts.end());
     lines.push_back(std::move(line));
   }
+  if (too_short > 0) lines.front().note = counted(too_short, "flange") + " shorter than the pitch got no weld";
   return lines;
 }
 

@@ -15,6 +15,7 @@ struct WeldLine {
   std::vector<Vec3> places;
   std::vector<PartIndex> parts;                         ///< only sheets of these count, ascending; empty: all
   std::vector<std::array<std::vector<Vec3>, 2>> sides;  ///< of a flange (one entry): its two sides
+  std::string note{};                                   ///< for the report
 };
 
 /// Errors: a field is missing or doesn't fit (no pitch, a pitch or end distance longer than the flange, a flange without width, no flange),

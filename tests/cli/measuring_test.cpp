@@ -70,6 +70,14 @@ TEST_F(Cli, welds_are_checked) {
   EXPECT_EQ(prismesh({"welds", deck, "--pitch", "-1"}).status, kWrongUsage);
 }
 
+TEST_F(Cli, cross_section_never_overwrites_the_deck) {
+  const std::string deck = write("strip.k", bent_strip());
+  const Outcome outcome = prismesh({"cross-section", deck, "--plane", "y=4", "-o", path("./strip.k")});
+  EXPECT_EQ(outcome.status, kFailed);
+  EXPECT_THAT(outcome.err, HasSubstr("strip.k: is a file of the deck; the curves need another one"));
+  EXPECT_EQ(read(deck), bent_strip());
+}
+
 TEST_F(Cli, cross_section_through_nothing_says_so) {
   const std::string deck = write("strip.k", bent_strip());
   EXPECT_EQ(prismesh({"cross-section", deck, "--plane", "x=1e300"}).out, "the plane cuts no shell\n");

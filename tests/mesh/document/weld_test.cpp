@@ -508,5 +508,41 @@ TEST_F(RadiossWeld, without_an_example_is_refused_by_name) {
               HasSubstr("this version makes no part of welds in radioss decks"));
 }
 
+TEST_F(WeldEdit, no_point_gets_a_weld_twice) {
+  Document document = deck();
+  const EditReport report =
+      must_apply(document, R"({"edit": "weld", "points": [[40, 10, 0], [40, 10, 0], [60, 10, 0.7], [5, 10, 0]], "like": "beam:90001"})");
+  EXPECT_EQ(report.welded->welds_added, 2U);
+  ASSERT_EQ(report.welded->spots_left, 2U) << "one is there twice, one is on the deck's own weld";
+  EXPECT_EQ(report.welded->left_out[0].why, "a weld is there already");
+}
+
+TEST_F(WeldEdit, a_flange_shorter_than_the_pitch_doesnt_refuse_the_others) {
+  // Beside the flange of 120 another one of 50 of the same parts, at x = 300.
+  std::string nodes, shells;
+  char line[128];
+  for (int part = 1; part <= 2; ++part) {
+    for (int j = 0; j <= 4; ++j)
+      for (int i = 0; i <= 10; ++i) {
+        std::snprintf(line, sizeof line, "%8d%16.6f%16.6f%16.6f\n", 1000 * part + 501 + i + 11 * j, 300 + 5.0 * i, 5.0 * j,
+                      1.5 * (part - 1));
+        nodes += line;
+      }
+    for (int j = 0; j < 4; ++j)
+      for (int i = 0; i < 10; ++i) {
+        const int corner = 1000 * part + 501 + i + 11 * j;
+        std::snprintf(line, sizeof line, "%8d%8d%8d%8d%8d%8d\n", 1000 * part + 501 + i + 10 * j, part, corner, corner + 1, corner + 12,
+                      corner + 11);
+        shells += line;
+      }
+  }
+  Document document = deck(2, kOneWeld + "*NODE\n" + nodes + "*ELEMENT_SHELL\n" + shells);
+  const EditReport report = must_apply(document, R"({"edit": "weld", "flange": {"between": "1,2"}, "pitch": 60, "like": "beam:90001"})");
+  EXPECT_EQ(report.welded->welds_added, 1U) << "at 90; the deck's weld at 5 is nearer to 30 than half the pitch";
+  EXPECT_THAT(report.notes, testing::Contains("1 flange shorter than the pitch got no weld"));
+  EXPECT_THAT(refusal(document, R"({"edit": "weld", "flange": {"between": "1,2"}, "pitch": 500, "like": "beam:90001"})"),
+              HasSubstr("is longer than the flange"));
+}
+
 }  // namespace
 }  // namespace prismesh::mesh::document
