@@ -16,6 +16,7 @@ namespace prismesh::ipc::remote {
 
 namespace {
 
+constexpr std::size_t kLeastChunk = std::size_t{64} << 10;
 constexpr double kHashingShare = 0.1;  ///< of the progress bar
 constexpr std::size_t kPushHashPiece = std::size_t{4} << 20;
 constexpr int kRoundsMax = 3;
@@ -176,6 +177,7 @@ class Push {
     });
     sent_bytes_ += out;
     if (!answer) {
+      chunk_bytes_ = std::max(std::min(kLeastChunk, options_.chunk_bytes), chunk_bytes_ / 2);
       if (const Result<void> waited = remote_.wait_after(answer.error()); !waited) return fail(waited.error());
       return std::optional<std::uint64_t>();
     }
@@ -184,6 +186,7 @@ class Push {
       if (!now) return fail(now.error());
       if (*now <= at) return fail(remote_.station().name, "takes a chunk, but its upload doesn't grow");
       conflicts_ = 0;
+      chunk_bytes_ = std::min(options_.chunk_bytes, 2 * chunk_bytes_);
       advance(*now);
       // A quick line never waits, so it wasn't asked meanwhile.
       if (!told()) return fail(cancelled());
@@ -224,7 +227,7 @@ class Push {
         continue;
       }
       advance(*at);
-      chunk.resize(static_cast<std::size_t>(std::min<std::uint64_t>(options_.chunk_bytes, file.is.bytes - *at)));
+      chunk.resize(static_cast<std::size_t>(std::min<std::uint64_t>(chunk_bytes_, file.is.bytes - *at)));
       const Result<std::size_t> got = store::read_at(opened->file, chunk.data(), chunk.size(), *at, file.disk);
       if (!got) return fail(got.error());
       if (*got != chunk.size()) return fail(file.disk.string(), "became shorter while it was sent; push it again");
@@ -242,6 +245,7 @@ class Push {
   store::Manifest manifest_;
   std::vector<Sending> sending_;
   std::uint64_t all_bytes_ = 0, done_bytes_ = 0, sent_bytes_ = 0;
+  std::size_t chunk_bytes_ = options_.chunk_bytes;  ///< a line that is always cut carries smaller chunks only; a chunk counts whole or not
   double fraction_ = 0;
   int conflicts_ = 0;
 };

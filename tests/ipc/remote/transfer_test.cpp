@@ -49,6 +49,18 @@ TEST_F(Remote, a_line_that_is_cut_sends_no_more_than_a_chunk_twice_each_time) {
   EXPECT_EQ(texts_in(folder() / "back"), texts);
 }
 
+TEST_F(Remote, a_line_that_never_carries_a_whole_chunk_gets_smaller_ones) {
+  const FileTexts texts{{"a.k", noise(2'000'000, 8)}};
+  std::mt19937_64 random(9);
+  CuttingLine line(rig_.intake->port(), [&] { return 150'000 + random() % 200'000; });
+  PushOptions options = push_options();
+  options.chunk_bytes = std::size_t{1} << 20;
+  const Result<Pushed> pushed = push(book(), station(line.port()), write(texts), "a.k", options);
+  ASSERT_TRUE(pushed) << pushed.error().text();
+  EXPECT_GT(line.cuts(), 5u);
+  EXPECT_LT(line.cuts(), 100u);
+}
+
 TEST_F(Remote, another_call_goes_on_where_the_last_one_stopped) {
   const FileTexts texts{{"a.k", noise(1'000'000, 4)}};
   const std::vector<LocalFile> files = write(texts);
