@@ -147,10 +147,13 @@ Outcome RequestHandler::contacts(const ipc::GetContacts& request, const Progress
   if (!keeper_.is_open()) return {ipc::failed_from({"", 0, "no document is open"}), {}, {}, {}};
   const mesh::document::Generation& current = keeper_.document().current();
   const auto tell = [&](double fraction) { return fraction <= 0 || progress(fraction); };
+  const std::int64_t began_ns = clock_.now_ns();
   const Result<mesh::document::Contacts> found =
       mesh::document::find_contacts(current, contact_, {request.select, request.gap, request.thickness}, tell);
   if (!found) return {ipc::failed_from(found.error()), {}, {}, {}};
-  return {contacts_answer(current.number, *found), {}, {}, {}};
+  ipc::Contacts answer = contacts_answer(current.number, *found);
+  answer.search_ns = clock_.now_ns() - began_ns;
+  return {std::move(answer), {}, {}, {}};
 }
 
 Outcome RequestHandler::save(const ipc::Save& request, const Progress& progress) {

@@ -279,6 +279,7 @@ struct Contacts {
   std::uint64_t perforations = 0, penetrations = 0, clearances = 0;  ///< without the limit
   std::vector<ContactRegion> regions;                                ///< perforations, then the others; of each the worst first
   std::vector<std::int64_t> without_thickness;                       ///< ids of parts, ascending
+  std::int64_t search_ns = 0;                                        ///< how long the search took, without the wait for it
 };
 /// Of one answer. What is beyond them is left out from the end, so that the worst regions are whole.
 struct ContactLimits {

@@ -40,7 +40,7 @@ PRISMESH_JSON_OBJECT(ipc::ContactRegion, f("kind", m.kind), f("a", m.a), f("b", 
                      f("shells", m.shells), f("curve", m.curve), f("vectors", m.vectors));
 PRISMESH_MESSAGE(ipc::Contacts, "contacts", f("generation", m.generation), f("perforations", m.perforations),
                  f("penetrations", m.penetrations), f("clearances", m.clearances), f("regions", m.regions),
-                 f("without_thickness", m.without_thickness));
+                 f("without_thickness", m.without_thickness), f("search_ns", m.search_ns));
 PRISMESH_JSON_OBJECT(ipc::Camera, f("pivot", m.pivot), f("rotation", m.rotation), f("mm_per_unit", m.mm_per_unit),
                      f("stands_mm", m.stands_mm));
 PRISMESH_MESSAGE(ipc::ShareCamera, "share_camera", f("camera", m.camera));

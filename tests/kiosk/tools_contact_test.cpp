@@ -101,6 +101,7 @@ class ContactServer final : public ipc::ServerHandler {
     } else if (std::holds_alternative<ipc::GetContacts>(request->request)) {
       ipc::Contacts contacts = three_places();
       contacts.generation = generation;
+      contacts.search_ns = search_ns;
       if (++asked; refuses)
         server_.send(client, ipc::encode_answer(request->number, ipc::Failed{"", 0, "cancelled"}, 0), {});
       else
@@ -111,6 +112,7 @@ class ContactServer final : public ipc::ServerHandler {
   }
 
   std::atomic<std::uint64_t> generation{1};
+  std::atomic<std::int64_t> search_ns{0};
   std::atomic<int> asked{0};
   std::atomic<bool> refuses{false};
 
@@ -126,9 +128,8 @@ TEST(ContactLinkTest, asks_once_a_state_and_after_a_long_search_only_when_told) 
   {
     ContactServer server(folder / "model.sock");
     MonotonicClock real;
-    ManualClock clock;
     link::ModelLink link(folder / "model.sock", std::nullopt, real, notices::Trace(nullptr));
-    ContactLink contact(link, clock);
+    ContactLink contact(link);
     const auto turn_until = [&](const auto& done) {
       for (int tries = 0; tries < 30000 && !done(); ++tries, std::this_thread::sleep_for(std::chrono::milliseconds(1))) link.turn();
       return done();
@@ -145,26 +146,33 @@ TEST(ContactLinkTest, asks_once_a_state_and_after_a_long_search_only_when_told) 
     server.generation = 2;
     contact.want(2);
     EXPECT_TRUE(contact.asking());
-    clock.advance_ns(kMaxOwnSearchNs + 1);
     ASSERT_TRUE(answered());
-    EXPECT_EQ(server.asked, 2);
-    contact.want(3);
-    EXPECT_FALSE(contact.asking()) << "the last one took long";
     server.generation = 3;
-    contact.want(3, true);
+    server.search_ns = kMaxOwnSearchNs + 1;
+    contact.want(3);
+    EXPECT_TRUE(contact.asking()) << "the last one took the server no time";
     ASSERT_TRUE(answered());
-    EXPECT_EQ(contact.contacts()->generation, 3u);
-    server.refuses = true;
+    EXPECT_EQ(server.asked, 3);
     contact.want(4);
+    EXPECT_FALSE(contact.asking()) << "the last one took long";
+    server.generation = 4;
+    server.search_ns = 0;
+    contact.want(4, true);
+    ASSERT_TRUE(answered());
+    EXPECT_EQ(contact.contacts()->generation, 4u);
+    server.refuses = true;
+    contact.want(5);
     ASSERT_TRUE(answered());
     EXPECT_EQ(contact.problem(), "stopped; look again to see it");
-    EXPECT_EQ(contact.contacts()->generation, 3u) << "the ones before stay";
-    contact.want(4);
+    EXPECT_EQ(contact.contacts()->generation, 4u) << "the ones before stay";
+    contact.want(5);
     EXPECT_FALSE(contact.asking()) << "that state was refused";
-    EXPECT_EQ(server.asked, 4);
-    contact.want(4, true);
+    contact.want(6);
+    EXPECT_FALSE(contact.asking()) << "a search that was stopped is one too many";
+    EXPECT_EQ(server.asked, 5);
+    contact.want(5, true);
     contact.forget();
-    EXPECT_TRUE(turn_until([&] { return server.asked == 5; }));
+    EXPECT_TRUE(turn_until([&] { return server.asked == 6; }));
     for (int turn = 0; turn < 50; ++turn) link.turn(), std::this_thread::sleep_for(std::chrono::milliseconds(1));
     EXPECT_EQ(contact.contacts(), nullptr) << "an answer to a question that was given up";
     EXPECT_TRUE(contact.problem().empty());

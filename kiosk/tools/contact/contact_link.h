@@ -5,17 +5,17 @@
 #include <optional>
 #include <string>
 
-#include "base/clock.h"
 #include "kiosk/link/model_link.h"
 
 namespace prismesh::kiosk::tools::contact {
 
-/// After a search that took longer the next one waits until the user asks for it: edits would wait behind it.
+/// After a search that took the server longer the next one waits until the user asks for it: edits would wait behind it. A slow
+/// answer alone doesn't count: it may have waited behind an edit, or for a busy machine.
 inline constexpr std::int64_t kMaxOwnSearchNs = 1'000'000'000;
 
 class ContactLink {
  public:
-  ContactLink(link::ModelLink& link, Clock& clock) : link_(link), clock_(clock) {}
+  explicit ContactLink(link::ModelLink& link) : link_(link) {}
 
   /// Asks for the generation's regions unless they are here, or were refused, or the last search took long. Call it again after each
   /// message of the server. `now`: the user asks: none of these counts.
@@ -31,11 +31,10 @@ class ContactLink {
 
  private:
   link::ModelLink& link_;
-  Clock& clock_;
   std::optional<ipc::Contacts> contacts_;
   std::optional<std::uint64_t> refused_;  ///< generation
   std::string problem_;
-  std::int64_t took_ns_ = 0;  ///< the last search
+  bool slow_ = false;  ///< the last search took long, or the user stopped it
   std::uint64_t answers_ = 0;
   std::uint64_t question_ = 0;  ///< number of the last one: an answer to an earlier one doesn't count
   bool asking_ = false;

@@ -24,7 +24,7 @@ render::ContactPicture picture_of(const ipc::Contacts& contacts, const std::opti
 
 class ContactTool final : public toolkit::Tool, public toolkit::InRail, public toolkit::HasOptions {
  public:
-  explicit ContactTool(toolkit::ToolContext& context) : context_(context), link_(context.link, context.clock) {}
+  explicit ContactTool(toolkit::ToolContext& context) : context_(context), link_(context.link) {}
 
   std::string_view name() const override;
   void command(std::uint8_t number, const toolkit::Pointer& pointer) override;

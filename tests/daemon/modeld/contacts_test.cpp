@@ -97,6 +97,21 @@ TEST_F(ContactsAsked, describe_a_penetration) {
   EXPECT_NEAR(region.vectors[71].to[2], 1, 1e-12) << "the upper one up";
 }
 
+TEST_F(ContactsAsked, say_how_long_the_search_took) {
+  open(write_plates(file("near.k"), 0.75));
+  std::int64_t passed = 0;
+  const ipc::Answer answer = handler_
+                                 .contacts({},
+                                           [&](double) {
+                                             clock_.advance_ns(7), passed += 7;
+                                             return true;
+                                           })
+                                 .answer;
+  EXPECT_GT(passed, 0) << "it was told how far the search is";
+  ASSERT_TRUE(std::holds_alternative<ipc::Contacts>(answer));
+  EXPECT_EQ(std::get<ipc::Contacts>(answer).search_ns, passed);
+}
+
 TEST_F(ContactsAsked, describe_a_perforation_with_its_curve) {
   open(write_plates(file("apart.k"), 20));
   edit(R"({"edit":"rotate","point":[25,25,20],"axis":[0,1,0],"degrees":90,"on":"101-136","falloff":{"profile":"constant"}})");
