@@ -51,6 +51,14 @@ void add_welded(const document::Welded& welded, Json& object) {
   object["left_out"] = std::move(left);
 }
 
+void add_mended(const document::WeldsMended& mended, Json& object) {
+  Json left = Json::array();
+  for (const document::WeldLeft& weld : mended.left) left.push_back({{"at", weld.at}, {"why", printable(weld.why)}});
+  object["welds_broken"] = mended.broken;
+  object["welds_mended"] = mended.mended;
+  object["welds_left"] = std::move(left);
+}
+
 Json edit_object(const document::EditReport& report) {
   Json notes = Json::array();
   for (const std::string& note : report.notes) notes.push_back(printable(note));
@@ -72,6 +80,7 @@ Json edit_object(const document::EditReport& report) {
   object["lost_connections"] = report.lost_connections;
   if (report.separated) add_separated(*report.separated, object);
   if (report.welded) add_welded(*report.welded, object);
+  if (report.welds_mended) add_mended(*report.welds_mended, object);
   if (report.stopped) object["stopped"] = stopped_object(*report.stopped);
   if (report.mass_before) object["mass_before"] = *report.mass_before;
   if (report.mass_after) object["mass_after"] = *report.mass_after;

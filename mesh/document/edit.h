@@ -238,6 +238,13 @@ struct Weld {
   std::optional<std::string> as;  ///< what a weld is: "beam"; absent: as `like`
 };
 
+/// Puts the ends of welds back onto sheets: of those that have a loose end or join nothing (docs/welds.md). Lengths are in the deck's unit.
+struct RepairWelds {
+  std::optional<std::vector<std::string>> at;  ///< only these: "beam:9"; absent: all
+  double gap = 0;                              ///< as Weld
+  std::optional<double> max_move;              ///< of a node; absent: as long as a joint at the sheet may be
+};
+
 struct Undo {};
 struct Redo {};
 /// Makes redo lead to a branch that leaves from the current state. What redo led to before becomes a branch.
@@ -246,7 +253,7 @@ struct TakeBranch {
 };
 
 using Edit = std::variant<Select, SelectRegion, SelectLasso, SelectFlange, Grow, Shrink, Invert, SetParts, SetTargetSize, SetCriteria,
-                          Translate, Lift, Slide, Rotate, Move, Relax, Repair, Restructure, Separate, Weld, Undo, Redo, TakeBranch>;
+                          Translate, Lift, Slide, Rotate, Move, Relax, Repair, Restructure, Separate, Weld, RepairWelds, Undo, Redo, TakeBranch>;
 
 /// The Shaping of a shaping edit; null for the others.
 const Shaping* shaping_of(const Edit& edit);

@@ -102,6 +102,7 @@ inline constexpr ListLimits kOutline{3, 100'000, "points [x, y]", "point"};
 inline constexpr ListLimits kEntities{1, 1000, "entities like [\"shell:12\", \"shell:40\"]", ""};
 inline constexpr ListLimits kLinePoints{2, 100'000, "points [x, y, z]", "point"};
 inline constexpr ListLimits kWeldPoints{1, 1'000'000, "points [x, y, z]", "point"};
+inline constexpr ListLimits kWelds{1, 100'000, "welds like [\"beam:9\", \"spring:4\"]", ""};
 inline constexpr WholeNumberLimits kSheetsOfWeld{2, 6};
 inline constexpr ListLimits kContactKinds{1, 2, "kinds of contact like [\"perforation\", \"penetration\"]", ""};
 inline constexpr TwoWords kNormals{"grab", "each", "\"grab\" (all nodes along the normal at the grab) or \"each\""};
@@ -184,6 +185,8 @@ PRISMESH_JSON_OBJECT(mesh::document::Weld, f("flange", m.flange), f("along", m.a
                      f("density", m.density, kPositive), f("youngs_modulus", m.youngs_modulus, kPositive),
                      f("poissons_ratio", m.poissons_ratio, NumberLimits{0, 0.5}), f("yield_stress", m.yield_stress, kPositive),
                      f("as", m.as));
+PRISMESH_JSON_OBJECT(mesh::document::RepairWelds, f("at", m.at, kWelds), f("gap", m.gap, kNotNegative),
+                     f("max_move", m.max_move, kPositive));
 PRISMESH_JSON_OBJECT(mesh::document::Undo, );
 PRISMESH_JSON_OBJECT(mesh::document::Redo, );
 PRISMESH_JSON_OBJECT(mesh::document::TakeBranch, f.required("number", m.number));

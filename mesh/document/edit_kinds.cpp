@@ -38,6 +38,7 @@ std::span<const EditKind> edit_kinds() {
         {"repair", mending, Repair{}},
         {"separate", EditGroup::contact, Separate{}},
         {"weld", joining, Weld{}},
+        {"repair_welds", joining, RepairWelds{}},
         {"undo", step, Undo{}},
         {"redo", step, Redo{}},
         {"branch", step, TakeBranch{}},

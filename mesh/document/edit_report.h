@@ -49,6 +49,18 @@ struct Welded {
   std::vector<SpotLeft> left_out;  ///< the first thousand of them
 };
 
+/// A weld that `repair_welds` left as it is.
+struct WeldLeft {
+  std::array<double, 3> at{};
+  std::string why;  ///< "beam:9: only a sheet of part:3 is there"
+};
+/// What `repair_welds` did.
+struct WeldsMended {
+  std::size_t broken = 0;  ///< of those asked for: with a loose end, or joining nothing
+  std::size_t mended = 0;
+  std::vector<WeldLeft> left;  ///< the first thousand of the others
+};
+
 struct EditReport {
   std::string edit;
   std::size_t nodes_moved = 0;
@@ -61,8 +73,9 @@ struct EditReport {
   std::size_t clusters_after = 0;
   std::size_t triangle_pairs = 0;  ///< of `repair`: edges between two triangles that it made and that stay (docs/repairing.md)
   std::optional<StoppedRepair> stopped;
-  std::optional<Separated> separated;  ///< of `separate`
-  std::optional<Welded> welded;        ///< of `weld`
+  std::optional<Separated> separated;       ///< of `separate`
+  std::optional<Welded> welded;             ///< of `weld`
+  std::optional<WeldsMended> welds_mended;  ///< of `repair_welds`
   // of edits that move nodes:
   std::size_t inverted = 0;           ///< shells that it turned over or folded (docs/shaping.md)
   std::size_t lost_connections = 0;   ///< nodes that lay on a sheet and no longer do (docs/connections.md)

@@ -34,4 +34,16 @@ void grow_relations(const Model& before, Generation& next) {
   next.relations = std::move(relations);
 }
 
+void place_anew(const NodeSet& moved, Generation& next) {
+  const auto is_moved = [&](const NodeOnSheet& each) { return std::binary_search(moved.begin(), moved.end(), each.node); };
+  if (moved.empty()) return;
+  std::vector<NodeOnSheet> nodes = connections::find_weld_nodes(next.model, next.relations->element_uses);
+  std::erase_if(nodes, [&](const NodeOnSheet& each) { return !is_moved(each); });
+  if (nodes.empty()) return;
+  auto relations = std::make_shared<DeckRelations>(*next.relations);
+  std::erase_if(relations->dependents.on_sheets, [&](const NodeOnSheet& each) { return !each.tied && is_moved(each); });
+  add_on_sheets(connections::find_sheets(next.model, std::move(nodes)), relations->dependents);
+  next.relations = std::move(relations);
+}
+
 }  // namespace prismesh::mesh::document

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "mesh/document/generation.h"
+#include "mesh/model/node_set.h"
 
 namespace prismesh::mesh::document {
 
@@ -9,5 +10,9 @@ namespace prismesh::mesh::document {
 /// sheets. Costs the relations, and the shells of the model if there are such elements. Precondition: the model of `next` has its
 /// adjacency.
 void grow_relations(const Model& before, Generation& next);
+
+/// Finds anew on which sheets those of the nodes lie that belong to welds. `moved` ascending; their places in `next` are others than before.
+/// Costs the elements, and the shells of the model if there are such nodes.
+void place_anew(const NodeSet& moved, Generation& next);
 
 }  // namespace prismesh::mesh::document

@@ -49,10 +49,11 @@ Result<std::shared_ptr<const Generation>> rebuilt(const Document& document, cons
   std::shared_ptr<const Judging> judging = std::exchange(next->judging, document.current().judging);
   settle_growth(document.current(), *moved, *next);
   grow_relations(document.current().model, *next);
+  next->made_by = edit_name(record.intent);
+  if (next->made_by == name(RepairWelds{})) place_anew(*moved, *next);
   if (judging != next->judging) judge_by(std::move(judging), *next);
   if (reshapes(record.intent)) next->surface = std::make_shared<const Model>(next->model);
   next->number = document.next_number;
-  next->made_by = edit_name(record.intent);
   next->own_bytes = own_bytes(document.current(), *next);
   return std::shared_ptr<const Generation>(std::move(next));
 }
