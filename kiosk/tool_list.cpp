@@ -15,6 +15,7 @@
 #include "kiosk/tools/selection/selection_tool.h"
 #include "kiosk/tools/shaping/shaping_tool.h"
 #include "kiosk/tools/view/view_tool.h"
+#include "kiosk/tools/welding/welding_tool.h"
 
 namespace prismesh::kiosk {
 namespace {
@@ -42,6 +43,7 @@ const std::vector<ListedTool>& listed_tools() {
       {tools::quality::keys(), make<tools::quality::QualityTool>},
       {tools::contact::keys(), make<tools::contact::ContactTool>},
       {tools::mesh_operations::keys(), make<tools::mesh_operations::MeshOperationsTool>},
+      {tools::welding::keys(), make<tools::welding::WeldingTool>},
       {tools::measuring::keys(), make<tools::measuring::MeasuringTool>},
       {tools::cutting::keys(), make<tools::cutting::CuttingTool>},
       {tools::parts::keys(), make<tools::parts::PartsTool>},

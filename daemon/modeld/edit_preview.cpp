@@ -61,6 +61,21 @@ void add_clusters(const mesh::document::Generation& next, const std::unordered_m
       if (crowded.erase(shell.corners[k]) > 0) shell.clusters |= 1U << k;
 }
 
+/// Adds the new elements with two nodes, such as welds, and where none would be made.
+void add_lines(const Model& model, const mesh::Changes& changes, ipc::EditPreviewed& preview) {
+  for (std::size_t c = 0; c < changes.added_elements.size(); ++c)
+    for (const std::uint32_t element : changes.added_elements[c]) {
+      const mesh::ElementBlock& block = *model.elements[c];
+      const std::uint32_t first = block.first_node[element];
+      if (block.first_node[element + 1] - first != 2) continue;
+      const mesh::Vec3 &a = model.position(block.nodes[first]), &b = model.position(block.nodes[first + 1]);
+      ++preview.line_count;
+      if (preview.lines.size() < ipc::kMaxPreviewedLines) preview.lines.push_back({a.x(), a.y(), a.z(), b.x(), b.y(), b.z()});
+    }
+  if (!preview.report.welded) return;
+  for (const mesh::document::SpotLeft& spot : preview.report.welded->left_out) preview.left_out.push_back({spot.at, spot.why});
+}
+
 }  // namespace
 
 Result<ipc::EditPreviewed> preview_edit(const mesh::document::Document& document, const mesh::document::Edit& edit, Clock* clock) {
@@ -85,6 +100,7 @@ Result<ipc::EditPreviewed> preview_edit(const mesh::document::Document& document
     add_shell(next, shell, known, preview);
   }
   add_clusters(next, known, preview);
+  add_lines(next.model, changes, preview);
   for (const ShellIndex shell : before) {
     if (preview.replaced.size() == ipc::kMaxPreviewedShells) break;
     preview.replaced.push_back(now.model.shell_ids[shell.value]);

@@ -1,6 +1,7 @@
 #include "daemon/modeld/request_handler.h"
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 #include <utility>
 
@@ -11,6 +12,7 @@
 #include "mesh/document/deck_relations.h"
 #include "mesh/document/followed_edges.h"
 #include "mesh/document/quality_figures.h"
+#include "mesh/document/weld_checks.h"
 
 namespace prismesh::modeld {
 
@@ -153,6 +155,25 @@ Outcome RequestHandler::contacts(const ipc::GetContacts& request, const Progress
   if (!found) return {ipc::failed_from(found.error()), {}, {}, {}};
   ipc::Contacts answer = contacts_answer(current.number, *found);
   answer.search_ns = clock_.now_ns() - began_ns;
+  return {std::move(answer), {}, {}, {}};
+}
+
+Outcome RequestHandler::weld_checks(const ipc::GetWeldChecks& request) const {
+  if (!keeper_.is_open()) return {ipc::failed_from({"", 0, "no document is open"}), {}, {}, {}};
+  for (const double length : {request.edge_distance, request.pitch})
+    if (!std::isfinite(length) || length < 0) return {ipc::failed_from({"", 0, "a length must be at least 0"}), {}, {}, {}};
+  const mesh::document::Document& document = keeper_.document();
+  const std::int64_t began_ns = clock_.now_ns();
+  const mesh::document::WeldChecks checks = mesh::document::check_welds(document, {request.edge_distance, request.pitch});
+  ipc::WeldChecks answer;
+  answer.generation = document.current().number;
+  answer.welds = checks.welds;
+  answer.finding_count = checks.findings.size();
+  answer.search_ns = clock_.now_ns() - began_ns;
+  for (const mesh::document::WeldFinding& finding : checks.findings) {
+    if (answer.findings.size() == ipc::kMaxWeldFindings) break;
+    answer.findings.push_back({finding.kind, finding.words, {finding.at.x(), finding.at.y(), finding.at.z()}});
+  }
   return {std::move(answer), {}, {}, {}};
 }
 

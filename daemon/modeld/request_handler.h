@@ -53,6 +53,7 @@ class RequestHandler {
   /// Finds where shells cross or are too close.
   Outcome go_to(const ipc::GoTo& request, const Progress& progress);
   Outcome contacts(const ipc::GetContacts& request, const Progress& progress);
+  Outcome weld_checks(const ipc::GetWeldChecks& request) const;
   /// A cancel before the first file is replaced leaves all files as they were; a later one is ignored.
   Outcome save(const ipc::Save& request, const Progress& progress = {});
   Outcome close(const ipc::Close& request);

@@ -271,6 +271,8 @@ void RequestScheduler::begin(Waiting next) {
   else if (auto* contacts = std::get_if<ipc::GetContacts>(&next.request))
     run_long(next, "Looking for contact", OnDeath::stops,
              [this, request = std::move(*contacts)](const Progress& progress) { return handler_.contacts(request, progress); });
+  else if (auto* welds = std::get_if<ipc::GetWeldChecks>(&next.request))
+    run([this, request = *welds] { return handler_.weld_checks(request); }, answer);
   else if (auto* save = std::get_if<ipc::Save>(&next.request))
     run_long(next, "Saving", OnDeath::goes_on,
              [this, request = std::move(*save)](const Progress& progress) { return handler_.save(request, progress); });

@@ -100,6 +100,12 @@ struct GetContacts {
   double gap = 0;                     ///< how far faces must be apart, deck's length unit
   std::optional<double> thickness;    ///< of all shells; absent: that in the deck's contacts, else of elements and sections
 };
+/// Asks for the welds and what is wrong with them (mesh/document/weld_checks.h). Costs the shells of the model. Lengths: deck's unit; 0:
+/// not checked.
+struct GetWeldChecks {
+  double edge_distance = 0;
+  double pitch = 0;
+};
 /// The camera of a view, for views that move together. In screen millimetres and deck coordinates, as in kiosk/stereo/view.h.
 struct Camera {
   std::array<double, 3> pivot{};
@@ -136,8 +142,8 @@ struct FollowPen {                         ///< descriptor: the state page of th
 struct LeavePen {};
 
 using Request = std::variant<Hello, Open, Save, Close, ApplyEdit, GoTo, BeginDrag, DragStep, CommitDrag, CancelDrag, Cancel, Count,
-                             GetQuality, FindShells, PreviewEdit, FindFollowedEdges, GetField, GetContacts, ShareCamera, GetState,
-                             GetHistory, GetSnapshot, ReturnSnapshot, FollowPen, LeavePen>;
+                             GetQuality, FindShells, PreviewEdit, FindFollowedEdges, GetField, GetContacts, GetWeldChecks, ShareCamera,
+                             GetState, GetHistory, GetSnapshot, ReturnSnapshot, FollowPen, LeavePen>;
 
 // --- answers (Failed and Done: ipc/wire/answers.h) ---
 struct Welcome {
@@ -220,15 +226,24 @@ struct PreviewedShell {
   std::uint32_t warn = 0, fail = 0;    ///< mesh::quality::ShellState
   std::uint32_t clusters = 0;          ///< bit k: at corner k are too many triangles, and this is the first of them here
 };
+/// A spot at which an edit would make no weld.
+struct PreviewedGap {
+  std::array<double, 3> at{};
+  std::string why;
+};
 struct EditPreviewed {
   std::uint64_t generation = 0;  ///< that the edit would be applied to
   mesh::document::EditReport report;
   std::vector<std::array<double, 3>> points;
-  std::vector<PreviewedShell> shells;  ///< max kMaxPreviewedShells
-  std::uint64_t shell_count = 0;       ///< without that limit
-  std::vector<std::int64_t> replaced;  ///< ids of shells that would be removed or changed
+  std::vector<PreviewedShell> shells;        ///< max kMaxPreviewedShells
+  std::uint64_t shell_count = 0;             ///< without that limit
+  std::vector<std::int64_t> replaced;        ///< ids of shells that would be removed or changed
+  std::vector<std::array<double, 6>> lines;  ///< new elements with two nodes: both ends; max kMaxPreviewedLines
+  std::uint64_t line_count = 0;              ///< without that limit
+  std::vector<PreviewedGap> left_out;        ///< spots that get no weld
 };
 inline constexpr std::size_t kMaxPreviewedShells = 2000;
+inline constexpr std::size_t kMaxPreviewedLines = 5000;
 struct FollowedEdges {
   std::uint64_t generation = 0;      ///< that the edit would be applied to
   std::vector<std::uint32_t> nodes;  ///< two for each edge, as indices into the generation's nodes; max kMaxFollowedEdges edges
@@ -287,6 +302,19 @@ struct ContactLimits {
   std::size_t shells = 20'000, segments = 10'000, vectors = 10'000;  ///< of all regions together
 };
 inline constexpr ContactLimits kMaxContacts;
+struct WeldFound {
+  std::string kind;  ///< mesh::document::WeldFinding
+  std::string words;
+  std::array<double, 3> at{};
+};
+struct WeldChecks {
+  std::uint64_t generation = 0;
+  std::uint64_t welds = 0;
+  std::uint64_t finding_count = 0;  ///< without the limit
+  std::vector<WeldFound> findings;  ///< max kMaxWeldFindings
+  std::int64_t search_ns = 0;       ///< how long the search took, without the wait for it
+};
+inline constexpr std::size_t kMaxWeldFindings = 1000;
 struct DragBegun {  ///< descriptor: the preview
   std::uint64_t drag = 0;
   std::uint64_t base_generation = 0;
@@ -303,7 +331,7 @@ struct Snapshot {  ///< descriptors: the table, then the segments listed in new_
 };
 struct PenFollowed {};  ///< descriptor: the page with the fields (ipc/pen/haptic_field_page.h)
 using Answer = std::variant<Failed, Done, Welcome, DocumentState, History, Saved, SaveWould, Edited, Counted, Quality, ShellsFound,
-                            EditPreviewed, FollowedEdges, DragBegun, Snapshot, FieldMade, Contacts, PenFollowed>;
+                            EditPreviewed, FollowedEdges, DragBegun, Snapshot, FieldMade, Contacts, WeldChecks, PenFollowed>;
 
 // --- events; sent to every client ---
 struct GenerationPublished {

@@ -32,6 +32,10 @@ PRISMESH_MESSAGE(ipc::GetHistory, "get_history", );
 PRISMESH_MESSAGE(ipc::GetField, "get_field", f("field", m.field), f("generation", m.generation), f("against", m.against),
                  f("against_generation", m.against_generation), f("from", m.from), f("to", m.to));
 PRISMESH_MESSAGE(ipc::GetContacts, "get_contacts", f("select", m.select), f("gap", m.gap), f("thickness", m.thickness));
+PRISMESH_MESSAGE(ipc::GetWeldChecks, "get_weld_checks", f("edge_distance", m.edge_distance), f("pitch", m.pitch));
+PRISMESH_JSON_OBJECT(ipc::WeldFound, f("kind", m.kind), f("words", m.words), f("at", m.at));
+PRISMESH_MESSAGE(ipc::WeldChecks, "weld_checks", f("generation", m.generation), f("welds", m.welds), f("finding_count", m.finding_count),
+                 f("findings", m.findings), f("search_ns", m.search_ns));
 PRISMESH_JSON_OBJECT(ipc::ContactVector, f("node", m.node), f("to", m.to));
 PRISMESH_JSON_OBJECT(ipc::ContactRegion, f("kind", m.kind), f("a", m.a), f("b", m.b), f("name_a", m.name_a), f("name_b", m.name_b),
                      f("shells_a", m.shells_a), f("shells_b", m.shells_b), f("length", m.length), f("max_depth", m.max_depth),
@@ -83,8 +87,10 @@ PRISMESH_JSON_OBJECT(ipc::QualityPart, f("part", m.part), f("shells", m.shells),
                      f("composite", m.composite), f("least_composite", m.least_composite), f("target_size", m.target_size),
                      f("size_from", m.size_from), f("criteria", m.criteria));
 PRISMESH_MESSAGE(ipc::ShellsFound, "shells_found", f("shells", m.shells), f("expr", m.expr));
+PRISMESH_JSON_OBJECT(ipc::PreviewedGap, f("at", m.at), f("why", m.why));
 PRISMESH_MESSAGE(ipc::EditPreviewed, "edit_previewed", f("generation", m.generation), f("report", m.report), f("points", m.points),
-                 f("shells", m.shells), f("shell_count", m.shell_count), f("replaced", m.replaced));
+                 f("shells", m.shells), f("shell_count", m.shell_count), f("replaced", m.replaced), f("lines", m.lines),
+                 f("line_count", m.line_count), f("left_out", m.left_out));
 PRISMESH_MESSAGE(ipc::FollowedEdges, "followed_edges", f("generation", m.generation), f("nodes", m.nodes), f("edge_count", m.edge_count));
 PRISMESH_JSON_OBJECT(ipc::PreviewedShell, f("shell", m.shell), f("corners", m.corners), f("warn", m.warn), f("fail", m.fail),
                      f("clusters", m.clusters));

@@ -32,6 +32,7 @@ Role needed(const Cancel&) { return Role::edit; }
 Role needed(const PreviewEdit&) { return Role::edit; }
 Role needed(const FindFollowedEdges&) { return Role::edit; }
 Role needed(const GetContacts&) { return Role::edit; }
+Role needed(const GetWeldChecks&) { return Role::edit; }
 // This turns the pictures of others.
 Role needed(const ShareCamera&) { return Role::edit; }
 // Whoever hands the field on to the pen's process needs this role there. The document stays as it is.

@@ -5,7 +5,7 @@
 namespace prismesh::kiosk::render {
 
 namespace {
-constexpr float kHiddenAlpha = 0.35F;  ///< of pieces behind a surface
+constexpr float kHandleHiddenAlpha = 0.35F;  ///< of pieces behind a surface
 }
 
 HandlePass::HandlePass(const Shaders& shaders) : shaders_(shaders), array_(gl::VertexArray::make()), buffer_(gl::Buffer::make()) {
@@ -37,7 +37,7 @@ void HandlePass::draw(const std::vector<HandlePiece>& pieces, const EyeView& eye
       glDisable(GL_CULL_FACE);
     else
       glEnable(GL_CULL_FACE);
-    program.set("ink", colour.x(), colour.y(), colour.z(), kHiddenAlpha * piece.alpha);
+    program.set("ink", colour.x(), colour.y(), colour.z(), kHandleHiddenAlpha * piece.alpha);
     glDepthMask(GL_FALSE);
     glDepthFunc(GL_GREATER);
     glDrawArrays(GL_TRIANGLES, 0, count);

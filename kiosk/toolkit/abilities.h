@@ -117,6 +117,8 @@ class Previews : public Ability {
  public:
   /// Ends a preview of the tool on the model, as another tool begins its own.
   virtual void leave_preview() = 0;
+  /// Does what is shown as a preview; false: nothing is.
+  virtual bool carry_out_preview() { return false; }
 };
 
 class MovesView : public Ability {
@@ -156,7 +158,7 @@ class TracesPicture : public Ability {
 // --- panels; drawn inside Gui::layout ---
 
 /// Where a tool stands in the rail, from above.
-enum class RailPlace : std::uint8_t { select, pull, turn, mesh, quality, contact, measure, cut, compare, pen };
+enum class RailPlace : std::uint8_t { select, pull, turn, mesh, quality, contact, weld, measure, cut, compare, pen };
 
 /// A button of the rail.
 struct RailEntry {

@@ -63,6 +63,8 @@ void ToolSet::leave_previews() {
   for (Previews* tool : with<Previews>()) tool->leave_preview();
 }
 
+bool ToolSet::carry_out_preview() { return std::ranges::any_of(with<Previews>(), &Previews::carry_out_preview); }
+
 void ToolSet::watch(std::int64_t now_ns) {
   for (Watches* tool : with<Watches>()) tool->watch(now_ns);
 }

@@ -39,6 +39,8 @@ class ToolSet {
   void cancel_gesture();
   bool pulling() const;
   void leave_previews();
+  /// Does what a tool shows as a preview; false: none does.
+  bool carry_out_preview();
   bool allow_edit();
   /// HoldsEdits::hold of the first tool that does.
   bool hold(const mesh::document::Edit& edit, bool sends);

@@ -137,6 +137,38 @@ Result<WeldKind> like_existing(const Document& document, const std::string& like
   return kind;
 }
 
+/// The beam or spring nearest to the place whose nodes lie on sheets: "beam:9". Errors: there is none.
+Result<std::string> nearest_weld(const Generation& generation, const Vec3& place) {
+  const Model& model = generation.model;
+  const std::vector<NodeOnSheet>& on_sheets = generation.relations->dependents.on_sheets;
+  const auto lies = [&](NodeIndex node) {
+    const auto at =
+        std::lower_bound(on_sheets.begin(), on_sheets.end(), node, [](const NodeOnSheet& each, NodeIndex n) { return each.node < n; });
+    return at != on_sheets.end() && at->node == node && !at->tied;
+  };
+  std::string nearest;
+  double least = 0;
+  for (const NodeOnSheet& each : on_sheets) {
+    if (each.tied) continue;
+    for (const ElementUse& use : uses_at(*generation.relations, each.node)) {
+      const auto& block = model.elements[static_cast<std::size_t>(use.element_class)];
+      const bool is_line = use.element_class == ElementClass::beam || use.element_class == ElementClass::discrete;
+      if (!is_line || block->first_node[use.element + 1] - block->first_node[use.element] != 2 || !block->part[use.element].valid())
+        continue;
+      const std::uint32_t first = block->first_node[use.element];
+      if (!lies(block->nodes[first]) || !lies(block->nodes[first + 1])) continue;
+      const double distance = (0.5 * (model.position(block->nodes[first]) + model.position(block->nodes[first + 1])) - place).norm();
+      if (!nearest.empty() && !(distance < least)) continue;
+      least = distance;
+      nearest = std::string(name(use.element_class)) + ":" + std::to_string(block->id[use.element]);
+    }
+  }
+  if (nearest.empty())
+    return fail(
+        "", "weld: \"like\": \"nearest\": the deck has no beam or spring that joins sheets; \"diameter\" makes welds without an example");
+  return nearest;
+}
+
 /// Of the sheets' parts, the least stiff of a value: a weld isn't better than what it joins.
 std::optional<double> least_of(const Model& model, const std::vector<PartIndex>& parts, std::optional<double> Part::*value) {
   std::optional<double> least;
@@ -455,13 +487,23 @@ Result<void> apply_edit(const Document& document, const Weld& edit, Generation& 
   const Generation& before = document.current();
   if (const Result<void> sound = check_form(document, edit); !sound) return sound;
   std::optional<WeldKind> kind;
-  if (edit.like) {
+  const bool like_nearest = edit.like == "nearest";
+  if (edit.like && !like_nearest) {  // before the places are looked for: a wrong name is told at once
     Result<WeldKind> like = like_existing(document, *edit.like);
     if (!like) return fail(like.error());
     kind = *like;
   }
   const Result<std::vector<WeldLine>> lines = weld_places(document, edit, progress);
   if (!lines) return fail(lines.error());
+  if (like_nearest) {
+    const auto first = std::find_if(lines->begin(), lines->end(), [](const WeldLine& line) { return !line.places.empty(); });
+    const Result<std::string> nearest = nearest_weld(before, first != lines->end() ? first->places.front() : Vec3(Vec3::Zero()));
+    if (!nearest) return fail(nearest.error());
+    Result<WeldKind> like = like_existing(document, *nearest);
+    if (!like) return fail(like.error());
+    kind = *like;
+    report.notes.push_back("like " + *nearest);
+  }
   std::vector<WantedWeld> welds;
   SpotSearch search(before, edit, kind ? &*kind : nullptr, report);
   for (const WeldLine& line : *lines) {

@@ -231,7 +231,7 @@ struct Weld {
   std::optional<int> sheets;                                 ///< how many of those that lie on each other are joined; absent: all
   std::optional<std::string> parts;                          ///< an expression of parts: only their sheets count
   double gap = 0;                                            ///< sheets may be farther apart than by their thickness by this
-  std::optional<std::string> like;                           ///< "beam:9": an element whose part and card the new ones get
+  std::optional<std::string> like;                           ///< "beam:9": an element whose part and card the new ones get; or "nearest"
   std::optional<double> diameter;                            ///< without `like`: of a new section
   // without `like`, of the new material, in the deck's units; absent: the least of the sheets'
   std::optional<double> density, youngs_modulus, poissons_ratio, yield_stress;
@@ -252,8 +252,9 @@ struct TakeBranch {
   std::uint64_t number = 0;  ///< Branch::number
 };
 
-using Edit = std::variant<Select, SelectRegion, SelectLasso, SelectFlange, Grow, Shrink, Invert, SetParts, SetTargetSize, SetCriteria,
-                          Translate, Lift, Slide, Rotate, Move, Relax, Repair, Restructure, Separate, Weld, RepairWelds, Undo, Redo, TakeBranch>;
+using Edit =
+    std::variant<Select, SelectRegion, SelectLasso, SelectFlange, Grow, Shrink, Invert, SetParts, SetTargetSize, SetCriteria, Translate,
+                 Lift, Slide, Rotate, Move, Relax, Repair, Restructure, Separate, Weld, RepairWelds, Undo, Redo, TakeBranch>;
 
 /// The Shaping of a shaping edit; null for the others.
 const Shaping* shaping_of(const Edit& edit);

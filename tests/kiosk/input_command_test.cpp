@@ -71,7 +71,7 @@ TEST(KeysTest, every_command_has_one_row_with_words) {
 TEST(KeysTest, the_commands_of_an_owner_are_numbered_without_gaps) {
   std::map<std::string_view, std::set<int>> numbers;
   for (const KeyBinding& binding : key_bindings()) numbers[binding.command.owner].insert(binding.command.number);
-  EXPECT_EQ(numbers.size(), 14U) << "thirteen tools and the editor";
+  EXPECT_EQ(numbers.size(), 15U) << "fourteen tools and the editor";
   for (const auto& [owner, taken] : numbers)
     EXPECT_EQ(*taken.rbegin() + 1, static_cast<int>(taken.size())) << owner << ": a row is missing";
 }
@@ -154,6 +154,12 @@ TEST(KeysTest, rows_keep_the_order_of_help_and_menu) {
                                              "Ctrl+M",
                                              "Ctrl+W",
                                              "Enter",
+                                             "F7",
+                                             "Shift+F7",
+                                             "Ctrl+F7",
+                                             "F8",
+                                             "Shift+F8",
+                                             "Ctrl+F8",
                                              "F4",
                                              "Shift+F4",
                                              "Ctrl+F4",
@@ -196,8 +202,9 @@ TEST(KeysTest, rows_keep_the_order_of_help_and_menu) {
 }
 
 TEST(KeysTest, what_edits_is_told_from_what_only_looks) {
-  const std::set<std::string_view> looks{"J",      "Right",  "Left",       "Shift+J",   "Ctrl+T",       "Ctrl+Shift+T",
-                                         "Ctrl+H", "Ctrl+K", "Ctrl+Right", "Ctrl+Left", "Ctrl+Shift+K", "F3"};
+  const std::set<std::string_view> looks{"J",      "Right",    "Left",       "Shift+J",   "Ctrl+T",       "Ctrl+Shift+T",
+                                         "Ctrl+H", "Ctrl+K",   "Ctrl+Right", "Ctrl+Left", "Ctrl+Shift+K", "F3",
+                                         "F7",     "Shift+F7", "Ctrl+F7",    "F8",        "Shift+F8"};
   for (const KeyBinding& binding : key_bindings()) {
     const bool part_or_mesh = binding.menu == Menu::parts || binding.menu == Menu::mesh;
     if (part_or_mesh) {
@@ -214,8 +221,9 @@ TEST(KeysTest, a_key_held_down_repeats_what_goes_on_in_steps) {
   std::set<std::string_view> repeated;
   for (const KeyBinding& binding : key_bindings())
     if (binding.repeats()) repeated.insert(binding.label);
-  EXPECT_EQ(repeated, (std::set<std::string_view>{"Ctrl+Z", "Ctrl+Y", "Right", "Left", "G", "B", "Shift+PgUp", "Shift+PgDn", "Ctrl+Up",
-                                                  "Ctrl+Down", "PgUp", "PgDn", "Ctrl+PgUp", "Ctrl+PgDn", "Ctrl+Right", "Ctrl+Left"}));
+  EXPECT_EQ(repeated,
+            (std::set<std::string_view>{"Ctrl+Z", "Ctrl+Y", "Right", "Left", "G", "B", "Shift+PgUp", "Shift+PgDn", "Ctrl+Up", "Ctrl+Down",
+                                        "PgUp", "PgDn", "Ctrl+PgUp", "Ctrl+PgDn", "Ctrl+Right", "Ctrl+Left", "F8", "Shift+F8"}));
 }
 
 TEST(KeysTest, a_label_says_which_key_it_is) {

@@ -115,6 +115,34 @@ HatDeck write_closed_hat(const std::filesystem::path& path) {
   return deck;
 }
 
+void write_flange(const std::filesystem::path& path) {
+  std::FILE* file = std::fopen(path.c_str(), "w");
+  std::fprintf(file, "*KEYWORD\n*NODE\n");
+  for (int part = 1; part <= 2; ++part)
+    for (int row = 0; row < 5; ++row)
+      for (int i = 0; i < 25; ++i)
+        std::fprintf(file, "%8d%16.6f%16.6f%16.6f\n", 1000 * part + 1 + i + 25 * row, 5.0 * i, 5.0 * row, 1.5 * (part - 1));
+  const std::array<Point, 4> ends{Point{5, 10, 0}, Point{5, 10, 1.5}, Point{100, 10, 0}, Point{100, 10, 9.5}};
+  for (std::size_t e = 0; e < ends.size(); ++e)
+    std::fprintf(file, "%8d%16.6f%16.6f%16.6f\n", 80001 + static_cast<int>(e), ends[e][0], ends[e][1], ends[e][2]);
+  std::fprintf(file, "*ELEMENT_SHELL\n");
+  for (int part = 1; part <= 2; ++part)
+    for (int row = 0; row < 4; ++row)
+      for (int i = 0; i < 24; ++i) {
+        const int corner = 1000 * part + 1 + i + 25 * row;
+        std::fprintf(file, "%8d%8d%8d%8d%8d%8d\n", 1000 * part + 1 + i + 24 * row, part, corner, corner + 1, corner + 26, corner + 25);
+      }
+  std::fprintf(
+      file,
+      "*ELEMENT_BEAM\n   90001      90   80001   80002       0       0       0       0       0       2\n"
+      "   90002      90   80003   80004       0       0       0       0       0       2\n"
+      "*PART\nlower\n         1         1         1\n*PART\nupper\n         2         1         1\n*PART\nspot welds\n        90"
+      "        90        90\n*SECTION_SHELL\n         1         2\n       1.5       1.5       1.5       1.5\n*MAT_ELASTIC\n         "
+      "1  7.85E-09    210000       0.3\n*SECTION_BEAM\n        90         9       1.0         2\n       6.0       6.0\n*MAT_SPOTWELD\n"
+      "        90  7.85E-09  210000.0       0.3     300.0    2100.0\n*END\n");
+  std::fclose(file);
+}
+
 Point sheet_normal(const Point& point) { return {point[0] / kRadius, 0, point[2] / kRadius}; }
 
 std::string whole_file(const std::filesystem::path& path) {

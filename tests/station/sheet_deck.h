@@ -28,6 +28,10 @@ struct HatDeck {
 };
 HatDeck write_closed_hat(const std::filesystem::path& path);
 
+/// Two sheets of 1.5 on each other, 120 x 20, the lower one at z = 0 (nodes 1001 and on), the upper one at 1.5 (2001 and on), 25 nodes in a
+/// row 5 apart. A beam welds them at (5, 10); a second one at (100, 10) hangs 8 above the upper one.
+void write_flange(const std::filesystem::path& path);
+
 std::string whole_file(const std::filesystem::path& path);
 std::vector<std::string> lines_of(const std::string& text);
 /// Node cards in fixed columns of 8 and 16 characters.

@@ -56,7 +56,7 @@ void MeshOperationsTool::command(std::uint8_t number, const Pointer& pointer) {
     case OperationCommand::collapse: choose(Operation::collapse, pointer); break;
     case OperationCommand::merge: choose(Operation::merge, pointer); break;
     case OperationCommand::swap: choose(Operation::swap, pointer); break;
-    case OperationCommand::carry_out: carry_out(); break;
+    case OperationCommand::carry_out: context_.tools.carry_out_preview(); break;
     case OperationCommand::take_in_hand: toolkit::toggle_in_hand(context_, this); break;
   }
 }
@@ -104,7 +104,10 @@ void MeshOperationsTool::click(const input::Pixel& at) {
   const auto target =
       shell ? hand_target(*context_.renderer.model(), toolkit::aim(context_.view), *chosen_.operation, *shell, at) : std::nullopt;
   if (!target) return;
-  if (chosen_.target == target && preview_.previewed() && preview_.previewed()->would) return carry_out();
+  if (chosen_.target == target && preview_.previewed() && preview_.previewed()->would) {
+    carry_out_preview();
+    return;
+  }
   const ipc::SnapshotView& shown = *context_.shown.snapshot;
   chosen_.target = target;
   mesh::document::Restructure edit;
@@ -116,13 +119,14 @@ void MeshOperationsTool::click(const input::Pixel& at) {
   preview_.ask(edit);
 }
 
-void MeshOperationsTool::carry_out() {
-  if (!chosen_.edit || !preview_.previewed() || !preview_.previewed()->would) return;
+bool MeshOperationsTool::carry_out_preview() {
+  if (!chosen_.edit || !preview_.previewed() || !preview_.previewed()->would) return false;
   toolkit::send(context_, *chosen_.edit);
   // The preview stays in the picture until the edit is done.
   const std::uint64_t generation = chosen_.generation;
   if (std::exchange(chosen_.shown, 0) != 0) kept_ = generation;
   forget();
+  return true;
 }
 
 bool MeshOperationsTool::leave_mode() {

@@ -6,11 +6,11 @@
 #include <span>
 #include <string>
 
+#include "kiosk/link/edit_preview.h"
 #include "kiosk/toolkit/abilities.h"
 #include "kiosk/toolkit/tool.h"
 #include "kiosk/toolkit/tool_context.h"
 #include "kiosk/tools/mesh_operations/by_hand.h"
-#include "kiosk/tools/mesh_operations/edit_preview.h"
 
 namespace prismesh::kiosk::tools::mesh_operations {
 
@@ -31,6 +31,7 @@ class MeshOperationsTool final : public toolkit::Tool,
   bool in_mode() const override { return chosen_.operation.has_value(); }
   bool leave_mode() override;
   void leave_preview() override;
+  bool carry_out_preview() override;
   Result<void> follow() override;
   void document_changed() override { leave_preview(); }
   std::string guidance() const override;
@@ -50,13 +51,12 @@ class MeshOperationsTool final : public toolkit::Tool,
   };
   void choose(mesh::repair::Operation operation, const toolkit::Pointer& pointer);
   void click(const input::Pixel& at);
-  void carry_out();
   void forget();
   void end_kept_preview();
   void show_preview(const ipc::EditPreviewed& would);
 
   toolkit::ToolContext& context_;
-  EditPreview preview_;
+  link::EditPreview preview_;
   Chosen chosen_;
   std::optional<std::uint64_t> kept_;  ///< generation whose preview stays until its edit is done
 };

@@ -7,7 +7,7 @@
 
 #include "kiosk/link/connection.h"
 
-namespace prismesh::kiosk::tools::mesh_operations {
+namespace prismesh::kiosk::link {
 
 class EditPreview {
  public:
@@ -30,4 +30,4 @@ class EditPreview {
   std::uint64_t number_ = 0;
 };
 
-}  // namespace prismesh::kiosk::tools::mesh_operations
+}  // namespace prismesh::kiosk::link

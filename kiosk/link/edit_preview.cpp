@@ -1,6 +1,6 @@
-#include "kiosk/tools/mesh_operations/edit_preview.h"
+#include "kiosk/link/edit_preview.h"
 
-namespace prismesh::kiosk::tools::mesh_operations {
+namespace prismesh::kiosk::link {
 
 void EditPreview::ask(const mesh::document::Edit& edit) {
   previewed_.reset();
@@ -18,4 +18,4 @@ void EditPreview::forget() {
   previewed_.reset();
 }
 
-}  // namespace prismesh::kiosk::tools::mesh_operations
+}  // namespace prismesh::kiosk::link
