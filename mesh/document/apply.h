@@ -28,6 +28,7 @@ Result<void> apply_edit(const Document& document, const Repair& edit, Generation
 Result<void> apply_edit(const Document& document, const Restructure& edit, Generation& next, EditReport& report);
 Result<void> apply_edit(const Document& document, const Separate& edit, Generation& next, EditReport& report, const Progress& progress);
 Result<void> apply_edit(const Document& document, const Weld& edit, Generation& next, EditReport& report, const Progress& progress);
+Result<void> apply_edit(const Document& document, const ReplacePart& edit, Generation& next, EditReport& report, const Progress& progress);
 
 /// Updates the weight of `next` for `shells`, which differ from `before`.
 void update_weight(const Generation& before, const ShellSet& shells, Generation& next);

@@ -238,6 +238,38 @@ struct Weld {
   std::optional<std::string> as;  ///< what a weld is: "beam"; absent: as `like`
 };
 
+/// The mesh of one part of another deck, in that deck's order.
+struct VariantMesh {
+  struct Node {
+    std::int64_t id = 0;
+    std::array<double, 3> at{};
+  };
+  struct Shell {
+    std::int64_t id = 0;
+    std::array<std::int64_t, 4> node{};  ///< ids; a triangle repeats its third
+  };
+  std::vector<Node> nodes;
+  std::vector<Shell> shells;
+  std::optional<double> thickness;  ///< of its part
+};
+/// A rigid motion that brings three points of the variant onto three of the deck: the first onto the first, the second onto the line
+/// through the second, the third into the plane. Node ids, or coordinates.
+struct Alignment {
+  std::vector<NodeReference> from;  ///< of the variant; coordinates are points, not the nodes nearest to them
+  std::vector<NodeReference> to;    ///< of the deck; likewise
+};
+/// Gives a part the mesh of a part of another deck (docs/replacing.md). Its number, section and material stay.
+struct ReplacePart {
+  std::int64_t part = 0;
+  std::string from;                       ///< the other deck (a path relative to the deck's folder)
+  std::optional<std::int64_t> from_part;  ///< absent: the only part with shells
+  std::optional<Alignment> align;         ///< absent: as it stands
+  std::optional<std::string> units;       ///< of the variant's lengths: "same", "mm", "m", "in"; absent: guessed
+  std::optional<double> tolerance;        ///< what was at a node is at the nearest new node within it; absent: half a new shell's side
+  /// The variant's mesh; without it the deck is read. The journal has it, so that a replay doesn't depend on the file.
+  std::optional<VariantMesh> mesh;
+};
+
 struct Undo {};
 struct Redo {};
 /// Makes redo lead to a branch that leaves from the current state. What redo led to before becomes a branch.
@@ -245,8 +277,9 @@ struct TakeBranch {
   std::uint64_t number = 0;  ///< Branch::number
 };
 
-using Edit = std::variant<Select, SelectRegion, SelectLasso, SelectFlange, Grow, Shrink, Invert, SetParts, SetTargetSize, SetCriteria,
-                          Translate, Lift, Slide, Rotate, Move, Relax, Repair, Restructure, Separate, Weld, Undo, Redo, TakeBranch>;
+using Edit =
+    std::variant<Select, SelectRegion, SelectLasso, SelectFlange, Grow, Shrink, Invert, SetParts, SetTargetSize, SetCriteria, Translate,
+                 Lift, Slide, Rotate, Move, Relax, Repair, Restructure, Separate, Weld, ReplacePart, Undo, Redo, TakeBranch>;
 
 /// The Shaping of a shaping edit; null for the others.
 const Shaping* shaping_of(const Edit& edit);

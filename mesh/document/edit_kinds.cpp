@@ -38,6 +38,7 @@ std::span<const EditKind> edit_kinds() {
         {"repair", mending, Repair{}},
         {"separate", EditGroup::contact, Separate{}},
         {"weld", joining, Weld{}},
+        {"replace_part", exchange, ReplacePart{}},
         {"undo", step, Undo{}},
         {"redo", step, Redo{}},
         {"branch", step, TakeBranch{}},
