@@ -237,9 +237,9 @@ Result<void> apply_edit(const Document& document, const ReplacePart& edit, Gener
   report.largest_move.reset();
   report.elements_added = mesh.shells.size();
   report.elements_removed = plan.old_shells.size();
-  report.notes.push_back("part:" + std::to_string(edit.part) + " got the mesh of part " + std::to_string(whole->from_part.value_or(0)) +
-                         " of " + std::filesystem::path(edit.from).filename().string() + ": " + counted(mesh.nodes.size(), "node") +
-                         " and " + counted(mesh.shells.size(), "shell") + " in place of " + counted(plan.old_shells.size(), "shell"));
+  report.notes.push_back("part:" + std::to_string(edit.part) + " got the mesh of part " + std::to_string(whole->with.value_or(0)) + " of " +
+                         std::filesystem::path(edit.deck).filename().string() + ": " + counted(mesh.nodes.size(), "node") + " and " +
+                         counted(mesh.shells.size(), "shell") + " in place of " + counted(plan.old_shells.size(), "shell"));
   if (const std::optional<double> own = (*before.model.parts)[part->value].thickness; own && mesh.thickness && *own != *mesh.thickness)
     report.notes.push_back("its section stays: it is " + readable(*own, 4) + " thick, the variant is " + readable(*mesh.thickness, 4));
   note_numbers(exchanger, plan, report);

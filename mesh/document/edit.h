@@ -253,19 +253,19 @@ struct VariantMesh {
   std::optional<double> thickness;  ///< of its part
 };
 /// A rigid motion that brings three points of the variant onto three of the deck: the first onto the first, the second onto the line
-/// through the second, the third into the plane. Node ids, or coordinates.
+/// through the second, the third into the plane. Node ids, or coordinates: points, not the nodes nearest to them. Empty: as it stands.
 struct Alignment {
-  std::vector<NodeReference> from;  ///< of the variant; coordinates are points, not the nodes nearest to them
-  std::vector<NodeReference> to;    ///< of the deck; likewise
+  std::vector<NodeReference> from;  ///< of the variant
+  std::vector<NodeReference> to;    ///< of the deck
 };
-/// Gives a part the mesh of a part of another deck (docs/replacing.md). Its number, section and material stay.
+/// Gives a part the mesh of a part of another deck, the variant (docs/replacing.md). Its number, section and material stay.
 struct ReplacePart {
   std::int64_t part = 0;
-  std::string from;                       ///< the other deck (a path relative to the deck's folder)
-  std::optional<std::int64_t> from_part;  ///< absent: the only part with shells
-  std::optional<Alignment> align;         ///< absent: as it stands
-  std::optional<std::string> units;       ///< of the variant's lengths: "same", "mm", "m", "in"; absent: guessed
-  std::optional<double> tolerance;        ///< what was at a node is at the nearest new node within it; absent: half a new shell's side
+  std::string deck;                  ///< the variant (a path relative to the deck's folder)
+  std::optional<std::int64_t> with;  ///< its part; absent: the only one with shells
+  Alignment align;
+  std::optional<std::string> units;  ///< of the variant's lengths: "same", "mm", "m", "in"; absent: guessed
+  std::optional<double> tolerance;   ///< what was at a node is at the nearest new node within it; absent: half a new shell's side
   /// The variant's mesh; without it the deck is read. The journal has it, so that a replay doesn't depend on the file.
   std::optional<VariantMesh> mesh;
 };

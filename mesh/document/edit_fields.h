@@ -92,6 +92,12 @@ struct Definition<mesh::document::VariantMesh::Shell> {
   static void write(Json& json, const mesh::document::VariantMesh::Shell& value);
   static Problem read(const Json& json, mesh::document::VariantMesh::Shell& value, Author author);
 };
+/// "as_it_stands" or [[3 points], [3 points]].
+template <>
+struct Definition<mesh::document::Alignment> {
+  static void write(Json& json, const mesh::document::Alignment& value);
+  static Problem read(const Json& json, mesh::document::Alignment& value, Author author);
+};
 /// An edit within another object. edit_from_json reads one that stands by itself.
 template <>
 struct Definition<mesh::document::Edit> {
@@ -113,7 +119,6 @@ inline constexpr ListLimits kEntities{1, 1000, "entities like [\"shell:12\", \"s
 inline constexpr ListLimits kLinePoints{2, 100'000, "points [x, y, z]", "point"};
 inline constexpr ListLimits kWeldPoints{1, 1'000'000, "points [x, y, z]", "point"};
 inline constexpr WholeNumberLimits kSheetsOfWeld{2, 6};
-inline constexpr ListLimits kThreePoints{3, 3, "points, each a node's id or [x, y, z]", "point"};
 inline constexpr WholeNumberLimits kPartIds{1, 1'000'000'000'000'000'000};
 inline constexpr ListLimits kVariantNodes{3, 100'000'000, "nodes [id, x, y, z]", "node"};
 inline constexpr ListLimits kVariantShells{1, 100'000'000, "shells [id, node, node, node, node]", "shell"};
@@ -200,17 +205,9 @@ PRISMESH_JSON_OBJECT(mesh::document::Weld, f("flange", m.flange), f("along", m.a
                      f("as", m.as));
 PRISMESH_JSON_OBJECT(mesh::document::VariantMesh, f.required("nodes", m.nodes, kVariantNodes),
                      f.required("shells", m.shells, kVariantShells), f("thickness", m.thickness, kPositive));
-template <>
-struct Definition<mesh::document::Alignment> {
-  static constexpr std::string_view kExample = R"({"from": [11, 12, 13], "to": [[0, 0, 0], [100, 0, 0], [0, 50, 0]]})";
-  static void fields(auto& m, auto& f) {
-    f.required("from", m.from, kThreePoints);
-    f.required("to", m.to, kThreePoints);
-  }
-};
-PRISMESH_JSON_OBJECT(mesh::document::ReplacePart, f.required("part", m.part, kPartIds), f.required("from", m.from),
-                     f("from_part", m.from_part, kPartIds), f("align", m.align), f("units", m.units),
-                     f("tolerance", m.tolerance, kPositive), f("mesh", m.mesh));
+PRISMESH_JSON_OBJECT(mesh::document::ReplacePart, f.required("part", m.part, kPartIds), f.required("deck", m.deck),
+                     f("with", m.with, kPartIds), f("align", m.align), f("units", m.units), f("tolerance", m.tolerance, kPositive),
+                     f("mesh", m.mesh));
 PRISMESH_JSON_OBJECT(mesh::document::Undo, );
 PRISMESH_JSON_OBJECT(mesh::document::Redo, );
 PRISMESH_JSON_OBJECT(mesh::document::TakeBranch, f.required("number", m.number));

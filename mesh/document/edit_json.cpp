@@ -165,6 +165,27 @@ Problem Definition<document::VariantMesh::Shell>::read(const Json& json, documen
   return sound ? std::nullopt : must_be("a shell [id, node, node, node, node]", json, author);
 }
 
+void Definition<document::Alignment>::write(Json& json, const document::Alignment& value) {
+  if (value.from.empty()) {
+    json = "as_it_stands";
+    return;
+  }
+  json = Json::array();
+  for (const auto* points : {&value.from, &value.to}) json::write(json.emplace_back(), *points);
+}
+
+Problem Definition<document::Alignment>::read(const Json& json, document::Alignment& value, Author author) {
+  value = {};
+  if (json == "as_it_stands") return std::nullopt;
+  const auto is_three = [](const Json& points) { return points.is_array() && points.size() == 3; };
+  if (!json.is_array() || json.size() != 2 || !is_three(json[0]) || !is_three(json[1]))
+    return must_be(
+        "\"as_it_stands\", or three points of the variant and three of the deck, like [[11, 12, 13], [[0, 0, 0], [90, 0, 0], 7]]", json,
+        author);
+  if (Problem problem = json::read(json[0], value.from, author)) return problem;
+  return json::read(json[1], value.to, author);
+}
+
 void Definition<document::TargetSize>::write(Json& json, const document::TargetSize& value) {
   if (const double* length = std::get_if<double>(&value))
     json = *length;

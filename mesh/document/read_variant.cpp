@@ -46,16 +46,15 @@ Result<PartIndex> find_variant_part(const deck::OpenedDeck& variant, const Repla
   for (const PartIndex part : parts)
     if (named++ < kNamed) known += (known.empty() ? "" : ", ") + std::to_string((*model.parts)[part.value].id);
   if (named > kNamed) known += ", ..";
-  if (parts.empty()) return fail(edit.from, "replace_part: the variant has no part with shells");
-  if (!edit.from_part) {
+  if (parts.empty()) return fail(edit.deck, "replace_part: the variant has no part with shells");
+  if (!edit.with) {
     if (parts.size() == 1) return *parts.begin();
-    return fail(edit.from, "replace_part: \"from_part\" is missing: the variant has the parts " + known);
+    return fail(edit.deck, "replace_part: \"with\" is missing: the variant has the parts " + known);
   }
-  const PartIndex part = model.find_part(*edit.from_part);
-  if (!part.valid()) return fail(edit.from, "replace_part: the variant has no part " + std::to_string(*edit.from_part) + ", but " + known);
+  const PartIndex part = model.find_part(*edit.with);
+  if (!part.valid()) return fail(edit.deck, "replace_part: the variant has no part " + std::to_string(*edit.with) + ", but " + known);
   if (!parts.contains(part))
-    return fail(edit.from,
-                "replace_part: part " + std::to_string(*edit.from_part) + " of the variant has no shells; others have: " + known);
+    return fail(edit.deck, "replace_part: part " + std::to_string(*edit.with) + " of the variant has no shells; others have: " + known);
   return part;
 }
 
@@ -67,12 +66,12 @@ Result<void> check_units(const Document& document, const deck::OpenedDeck& varia
     const std::optional<LengthUnit> given = length_unit_from(*edit.units);
     if (!given) return fail("", "replace_part: \"units\" must be \"same\", \"mm\", \"m\" or \"in\", not \"" + *edit.units + "\"");
     if (*given == own) return {};
-    return fail(edit.from, "replace_part: \"units\" says that the variant's lengths are in " + std::string(name(*given)) +
+    return fail(edit.deck, "replace_part: \"units\" says that the variant's lengths are in " + std::string(name(*given)) +
                                "; the deck's are in " + std::string(name(own)) + ". Lengths aren't scaled: convert the variant first");
   }
   const LengthUnit guessed = variant.deck->length_unit.value_or(deck::guess_length_unit(variant.model));
   if (guessed == own) return {};
-  return fail(edit.from, "replace_part: the variant's lengths seem to be in " + std::string(name(guessed)) + ", the deck's are in " +
+  return fail(edit.deck, "replace_part: the variant's lengths seem to be in " + std::string(name(guessed)) + ", the deck's are in " +
                              std::string(name(own)) +
                              ". Lengths aren't scaled: convert the variant, or give \"units\": \"same\" if both are in " +
                              std::string(name(own)));
@@ -150,28 +149,27 @@ std::array<Vec3, 3> points_of(const std::vector<NodeReference>& references) {
 
 Result<ReplacePart> with_mesh(const Document& document, const ReplacePart& edit, const Progress& progress) {
   if (edit.mesh) return edit;
-  const std::filesystem::path path = document.path.parent_path() / edit.from;
+  const std::filesystem::path path = document.path.parent_path() / edit.deck;
   const Result<deck::OpenedDeck> variant = document.read_variant(path, progress);
   if (!variant) return fail(variant.error());
   if (const Result<void> whole = check_whole(*variant); !whole) return fail(whole.error());
   const Result<PartIndex> part = find_variant_part(*variant, edit);
   if (!part) return fail(part.error());
   if (const Result<void> same = check_units(document, *variant, edit); !same) return fail(same.error());
-  Result<VariantMesh> mesh = mesh_of(*variant, *part, edit.from);
+  Result<VariantMesh> mesh = mesh_of(*variant, *part, edit.deck);
   if (!mesh) return fail(mesh.error());
   ReplacePart whole = edit;
-  whole.from_part = (*variant->model.parts)[part->value].id;
-  if (whole.align)
-    if (const Result<void> found = resolve(variant->model, "the variant", whole.align->from); !found) return fail(found.error());
+  whole.with = (*variant->model.parts)[part->value].id;
+  if (const Result<void> found = resolve(variant->model, "the variant", whole.align.from); !found) return fail(found.error());
   whole.mesh = std::move(*mesh);
   return whole;
 }
 
-Result<void> align_mesh(const Model& deck, const std::optional<Alignment>& align, VariantMesh& mesh) {
-  if (!align) return {};
-  std::vector<NodeReference> wanted = align->to;
+Result<void> align_mesh(const Model& deck, const Alignment& align, VariantMesh& mesh) {
+  if (align.from.empty()) return {};
+  std::vector<NodeReference> wanted = align.to;
   if (const Result<void> found = resolve(deck, "the deck", wanted); !found) return found;
-  std::vector<NodeReference> own_points = align->from;
+  std::vector<NodeReference> own_points = align.from;
   for (NodeReference& point : own_points) {
     const auto* id = std::get_if<std::int64_t>(&point);
     if (id == nullptr) continue;

@@ -13,8 +13,8 @@ namespace prismesh::mesh::document {
 /// isn't whole; its lengths have another unit.
 Result<ReplacePart> with_mesh(const Document& document, const ReplacePart& edit, const Progress& progress);
 
-/// Moves the mesh so that it is aligned; without `align` it stays. Errors: a node isn't there, three points lie on a line, or the points
+/// Moves the mesh so that it is aligned; as it stands it stays. Errors: a node isn't there, three points lie on a line, or the points
 /// are of different sizes. `deck`: of the nodes in Alignment::to.
-Result<void> align_mesh(const Model& deck, const std::optional<Alignment>& align, VariantMesh& mesh);
+Result<void> align_mesh(const Model& deck, const Alignment& align, VariantMesh& mesh);
 
 }  // namespace prismesh::mesh::document

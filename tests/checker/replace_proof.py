@@ -174,8 +174,8 @@ def main():
         for path, content in ((deck, before), (os.path.join(folder, "deck", "variant.k"), text)):
             with open(path, "w", newline="") as file:
                 file.write(content)
-        edit = json.dumps({"edit": "replace_part", "part": 1, "from": "variant.k", "from_part": 7,
-                           "align": {"from": [901, 925, 1201], "to": [1001, [X, 0, 0], 1079]}})
+        edit = json.dumps({"edit": "replace_part", "part": 1, "deck": "variant.k", "with": 7,
+                           "align": [[901, 925, 1201], [1001, [X, 0, 0], 1079]]})
         out = os.path.join(folder, "out", "car.k")
         done = subprocess.run([prismesh, "edit", deck, "--edit", edit, "-o", out, "--json"], capture_output=True, text=True)
         assert done.returncode == 0, done.stderr[-2000:]

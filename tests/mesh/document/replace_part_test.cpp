@@ -50,7 +50,7 @@ std::string variant_text(const VariantSheet& sheet, const std::string& more = ""
          "*MAT_ELASTIC\n         1  7.85E-09    210000       0.3\n" + more + "*END\n";
 }
 
-const std::string kReplace = R"({"edit": "replace_part", "part": 2, "from": "variant.k"})";
+const std::string kReplace = R"({"edit": "replace_part", "part": 2, "deck": "variant.k"})";
 
 class ReplacePartEdit : public ::testing::Test {
  protected:
@@ -217,7 +217,7 @@ TEST_F(ReplacePartEdit, the_tolerance_says_how_far_away_a_place_may_be) {
   Document document = deck("*BOUNDARY_SPC_NODE\n      2001         0         1         1         1\n");
   EXPECT_EQ(must_apply(document, kReplace).lost.size(), 1u);
   must_apply(document, R"({"edit": "undo"})");
-  EXPECT_EQ(must_apply(document, R"({"edit": "replace_part", "part": 2, "from": "variant.k", "tolerance": 1.6})").lost.size(), 0u);
+  EXPECT_EQ(must_apply(document, R"({"edit": "replace_part", "part": 2, "deck": "variant.k", "tolerance": 1.6})").lost.size(), 0u);
   EXPECT_EQ(document.current().model.position(document.current().model.find_node(2001)), Vec3(1.5, 0, 1.5)) << "its place is the variant's";
 }
 
@@ -246,8 +246,8 @@ TEST_F(ReplacePartEdit, three_points_turn_and_move_the_variant) {
       "*ELEMENT_SHELL\n       5       7      11      12      14      13\n*PART\nx\n         7         1         1\n*END\n";
   put_content(folder / "variant.k", text);
   Document document = deck("");
-  must_apply(document, R"({"edit": "replace_part", "part": 2, "from": "variant.k", "units": "mm",
-    "align": {"from": [11, 12, [-20, 7, 0]], "to": [2001, [9.5, 0, 1.5], 2101]}})");
+  must_apply(document, R"({"edit": "replace_part", "part": 2, "deck": "variant.k", "units": "mm",
+    "align": [[11, 12, [-20, 7, 0]], [2001, [9.5, 0, 1.5], 2101]]})");
   const Model& model = document.current().model;
   const std::vector<Vec3> wanted{{0, 0, 1.5}, {10, 0, 1.5}, {0, 20, 1.5}, {10, 20, 1.5}};
   for (int n = 0; n < 4; ++n) EXPECT_LT((model.position(model.find_node(11 + n)) - wanted[static_cast<std::size_t>(n)]).norm(), 1e-12) << n;
@@ -323,22 +323,22 @@ TEST_F(ReplacePartEdit, says_that_the_section_stays) {
 
 TEST_F(ReplacePartEdit, refuses_with_a_reason_and_changes_nothing) {
   Document document = deck("");
-  const auto of = [](const std::string& fields) { return R"({"edit": "replace_part", "from": "variant.k", )" + fields + "}"; };
+  const auto of = [](const std::string& fields) { return R"({"edit": "replace_part", "deck": "variant.k", )" + fields + "}"; };
   EXPECT_THAT(refused(document, of(R"("part": 9)")), HasSubstr("there is no part:9"));
-  EXPECT_THAT(refused(document, of(R"("part": 2, "from_part": 9)")), HasSubstr("the variant has no part 9, but 7"));
-  EXPECT_THAT(refused(document, R"({"edit": "replace_part", "part": 2, "from": "missing.k"})"), HasSubstr("missing.k"));
+  EXPECT_THAT(refused(document, of(R"("part": 2, "with": 9)")), HasSubstr("the variant has no part 9, but 7"));
+  EXPECT_THAT(refused(document, R"({"edit": "replace_part", "part": 2, "deck": "missing.k"})"), HasSubstr("missing.k"));
   EXPECT_THAT(refused(document, of(R"("part": 2, "units": "m")")), HasSubstr("Lengths aren't scaled"));
   EXPECT_THAT(refused(document, of(R"("part": 2, "units": "furlong")")), HasSubstr("\"units\" must be"));
-  EXPECT_THAT(refused(document, of(R"("part": 2, "align": {"from": [1, 2, 3], "to": [2001, 2002, 2101]})")), HasSubstr("lie on a line"));
-  EXPECT_THAT(refused(document, of(R"("part": 2, "align": {"from": [1, 49, 393], "to": [2001, 2002, 2101]})")), HasSubstr("never scaled"));
-  EXPECT_THAT(refused(document, of(R"("part": 2, "align": {"from": [1, 49, 99999], "to": [2001, 2002, 2101]})")),
+  EXPECT_THAT(refused(document, of(R"("part": 2, "align": [[1, 2, 3], [2001, 2002, 2101]])")), HasSubstr("lie on a line"));
+  EXPECT_THAT(refused(document, of(R"("part": 2, "align": [[1, 49, 393], [2001, 2002, 2101]])")), HasSubstr("never scaled"));
+  EXPECT_THAT(refused(document, of(R"("part": 2, "align": [[1, 49, 99999], [2001, 2002, 2101]])")),
               HasSubstr("the variant has no node 99999"));
   EXPECT_THAT(
       refused(document, of(R"("part": 2, "mesh": {"nodes": [[1, 0, 0, 0], [2, 1, 0, 0], [3, 1, 1, 0]], "shells": [[1, 1, 2, 4]]})")),
       HasSubstr("shell 1 of the mesh has the node 4, which it doesn't bring"));
   must_apply(document, R"({"edit": "lock", "on": "2"})");
   EXPECT_THAT(refused(document, of(R"("part": 2)")), HasSubstr("part:2 is locked"));
-  EXPECT_EQ(parse_edit(of(R"("part": 2, "align": {"from": [1, 2], "to": [1, 2, 3]})")).has_value(), false);
+  EXPECT_EQ(parse_edit(of(R"("part": 2, "align": [[1, 2], [1, 2, 3]])")).has_value(), false);
 }
 
 TEST_F(ReplacePartEdit, refuses_a_variant_that_names_what_it_does_not_bring) {
@@ -348,7 +348,7 @@ TEST_F(ReplacePartEdit, refuses_a_variant_that_names_what_it_does_not_bring) {
   variant({}, "*INCLUDE\nrest.k\n");
   EXPECT_THAT(refused(document, kReplace), HasSubstr("names the include file rest.k, which isn't there"));
   variant({}, "*ELEMENT_SHELL\n    9001       8       1       2      51      50\n");
-  EXPECT_THAT(refused(document, kReplace), HasSubstr("\"from_part\" is missing: the variant has the parts 7, 8"));
+  EXPECT_THAT(refused(document, kReplace), HasSubstr("\"with\" is missing: the variant has the parts 7, 8"));
 }
 
 TEST_F(ReplacePartEdit, asks_about_other_units_and_never_scales) {
@@ -359,7 +359,7 @@ TEST_F(ReplacePartEdit, asks_about_other_units_and_never_scales) {
   Document document = deck("");
   EXPECT_THAT(refused(document, kReplace),
               testing::AllOf(HasSubstr("seem to be in m, the deck's are in mm"), HasSubstr("\"units\": \"same\"")));
-  must_apply(document, R"({"edit": "replace_part", "part": 2, "from": "variant.k", "units": "same"})");
+  must_apply(document, R"({"edit": "replace_part", "part": 2, "deck": "variant.k", "units": "same"})");
   const Model& model = document.current().model;
   EXPECT_DOUBLE_EQ(model.position(model.find_node(49)).x(), 0.12);
 }
@@ -369,7 +369,7 @@ TEST_F(ReplacePartEdit, refuses_where_no_numbers_are_left) {
   Document document =
       open_deck(folder / "sheet.k", lsdyna_text(written_sheet(6, 3), "*CONTROL_FORMING_BLANKMESH\n\n         3        29        19\n"));
   variant({.columns = 12, .rows = 6, .side = 5, .low = {0, 0, 0}, .first = 101});
-  EXPECT_THAT(refused(document, R"({"edit": "replace_part", "part": 1, "from": "variant.k"})"), HasSubstr("no id is left"));
+  EXPECT_THAT(refused(document, R"({"edit": "replace_part", "part": 1, "deck": "variant.k"})"), HasSubstr("no id is left"));
 }
 
 TEST_F(ReplacePartEdit, exchanges_parts_of_radioss_decks_and_names_the_formats_that_it_does_not) {
@@ -395,7 +395,7 @@ TEST_F(ReplacePartEdit, exchanges_parts_of_radioss_decks_and_names_the_formats_t
     options.length_unit = LengthUnit::mm;
     Document document = open(folder / kDeckNames[format], options).value();
     const std::string json =
-        R"({"edit": "replace_part", "part": 1, "units": "same", "from": "fine-)" + std::string(kDeckNames[format]) + R"("})";
+        R"({"edit": "replace_part", "part": 1, "units": "same", "deck": "fine-)" + std::string(kDeckNames[format]) + R"("})";
     if (format == 1 || format == 3) {
       EXPECT_THAT(refused(document, json), HasSubstr(format == 1 ? "not of nastran decks" : "not of abaqus decks"));
       continue;
