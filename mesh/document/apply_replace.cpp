@@ -184,9 +184,9 @@ void list_loose(const Generation& before, const Generation& next, const PartExch
     if (++report.lost_connections <= kMaxLostConnections) report.lost.push_back(std::move(words));
   };
   for (const LostNode& each : plan.lost)
-    add("node:" + std::to_string(model.node_ids[each.node.value]) + ", which " + each.user +
-        (each.user.find(':') < each.user.size() ? " has" : " names") + ", is no longer connected: the nearest new node is " +
-        readable(each.nearest, 3) + " away, more than " + readable(tolerance, 3));
+    add("node:" + std::to_string(model.node_ids[each.node.value]) + ", which " + each.user + (each.by_element ? " has" : " names") +
+        ", is no longer connected: the nearest new node is " + readable(each.nearest, 3) + " away, " +
+        (each.nearest > tolerance ? "more than " + readable(tolerance, 3) : std::string("and has the place of another")));
   for (const NodeBetween& each : plan.between)
     add("node:" + std::to_string(next.model.node_ids[node_of(each.node).value]) + " lies between node:" +
         std::to_string(model.node_ids[each.ends[0].value]) + " and node:" + std::to_string(model.node_ids[each.ends[1].value]) + " of " +

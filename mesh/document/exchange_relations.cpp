@@ -1,14 +1,16 @@
 #include "mesh/document/exchange_relations.h"
 
 #include <algorithm>
+#include <map>
 #include <memory>
 #include <set>
 #include <utility>
 
-#include "mesh/connections/nodes_on_sheets.h"
+#include "mesh/connections/sheet_reach.h"
 #include "mesh/document/deck_relations.h"
 #include "mesh/document/find_dependents.h"
 #include "mesh/model/topology_change.h"
+#include "mesh/spatial/closest_point.h"
 
 namespace prismesh::mesh::document {
 
@@ -37,6 +39,13 @@ void exchange_joined(const Model& model, const Changes& changes, Dependents& dep
   std::sort(dependents.joined_nodes.begin(), dependents.joined_nodes.end());
 }
 
+ShellSet shells_of_part(const Model& model, PartIndex part) {
+  ShellSet shells;
+  for (std::size_t s = 0; s < model.shell_count(); ++s)
+    if (const ShellIndex shell(s); model.shell_parts[s] == part && !model.is_removed(shell)) shells.push_back(shell);
+  return shells;
+}
+
 }  // namespace
 
 std::vector<NodeOnSheet> exchange_relations(const Model& before, Generation& next) {
@@ -52,16 +61,25 @@ std::vector<NodeOnSheet> exchange_relations(const Model& before, Generation& nex
     const bool exchanged = is_in(changes.removed_shells, each.shell) || is_in(changes.reshaped_shells, each.shell);
     (exchanged ? again : stay).push_back(each);
   }
-  const std::vector<NodeOnSheet> found = connections::find_sheets(next.model, again);
-  auto at = found.begin();
+  std::vector<NodeOnSheet> found;
+  std::map<PartIndex, spatial::ShellTree> sheets;
   for (const NodeOnSheet& each : again) {
-    // A weld of which both ends lie on one sheet joins nothing.
-    const bool lies = at != found.end() && at->node == each.node;
-    if (!lies || next.model.shell_parts[at->shell.value] != before.shell_parts[each.shell.value]) lost.push_back(each);
-    if (lies) ++at;
+    const PartIndex part = before.shell_parts[each.shell.value];
+    if (!sheets.contains(part)) sheets.emplace(part, spatial::ShellTree(next.model, shells_of_part(next.model, part)));
+    // The reach of the old shell counts too: on smaller shells at the same place nothing is farther away.
+    const auto on = sheets.at(part).closest(next.model.position(each.node));
+    const auto attachment = each.tied ? connections::Attachment::tied : connections::Attachment::placed;
+    const double reach = on ? std::max(each.reach, connections::sheet_reach(next.model, on->shell, attachment)) : 0;
+    if (!on || on->distance > reach) {
+      lost.push_back(each);
+      continue;
+    }
+    found.push_back(each);
+    found.back().shell = on->shell;
+    found.back().reach = reach;
   }
   relations->dependents.on_sheets = std::move(stay);
-  add_on_sheets(found, relations->dependents);
+  add_on_sheets(std::move(found), relations->dependents);
   next.relations = std::move(relations);
   return lost;
 }

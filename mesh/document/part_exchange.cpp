@@ -11,6 +11,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "mesh/connections/sheet_reach.h"
 #include "mesh/deck/editing/edit_checks.h"
 #include "mesh/deck/editing/new_ids.h"
 #include "mesh/deck/formats/formats.h"
@@ -47,10 +48,12 @@ class PointGrid {
             for (const std::size_t p : cell->second)
               if (const double distance = (points_[p] - at).norm(); distance <= cell_) visit(p, distance);
   }
-  double nearest(const Vec3& at) const {
-    double least = std::numeric_limits<double>::infinity();
-    for (const Vec3& point : points_) least = std::min(least, (point - at).norm());
-    return least;
+  /// The nearest of all, however far, and its distance. Precondition: there is one.
+  std::pair<std::size_t, double> nearest(const Vec3& at) const {
+    std::pair<std::size_t, double> best{0, std::numeric_limits<double>::infinity()};
+    for (std::size_t p = 0; p < points_.size(); ++p)
+      if (const double distance = (points_[p] - at).norm(); distance < best.second) best = {p, distance};
+    return best;
   }
 
  private:
@@ -259,6 +262,7 @@ class ExchangePlanner {
   void pair_nodes() {
     const PointGrid grid(node_at_, tolerance_);
     std::vector<std::uint8_t> taken(mesh_.nodes.size(), 0);
+    std::vector<std::pair<std::size_t, std::pair<std::size_t, double>>> unpaired;
     for (const bool by_elements : {true, false}) {
       std::vector<Wanted> wanted;
       for (std::size_t n = 0; n < nodes_.size(); ++n) {
@@ -270,7 +274,7 @@ class ExchangePlanner {
       for (std::size_t w = 0; w < wanted.size(); ++w) {
         const std::size_t n = wanted[w].old;
         if (found[w] == kUnpaired) {
-          lose(n, grid.nearest(wanted[w].at));
+          unpaired.emplace_back(n, grid.nearest(wanted[w].at));
           continue;
         }
         plan_.node[found[w]] = nodes_[n];
@@ -282,6 +286,17 @@ class ExchangePlanner {
           ++plan_.joined_by_cards;
       }
     }
+    for (const auto& [n, nearest] : unpaired)
+      if (!is_merged(n, nearest.first, nearest.second)) lose(n, nearest.second);
+  }
+
+  /// Whether the sets of a node of the part have the new node there anyway, since it took the place of another of their nodes: a coarser
+  /// mesh has fewer nodes along the same line.
+  bool is_merged(std::size_t n, std::size_t at, double distance) const {
+    const OldNode& old = old_nodes_[n];
+    if (!old.user.empty() || old.held || old.naming.alone || distance > tolerance_ || !plan_.node[at].valid()) return false;
+    const std::vector<std::uint32_t>& sets = old_nodes_[rank_of(plan_.node[at])].naming.sets;
+    return std::includes(sets.begin(), sets.end(), old.naming.sets.begin(), old.naming.sets.end());
   }
 
   void lose(std::size_t n, double nearest) {
@@ -292,7 +307,7 @@ class ExchangePlanner {
     if (user.empty() && old.naming.alone) user = card_of(*now_.relations, *old.naming.alone);
     if (user.empty() && !old.naming.sets.empty()) user = card_of(*now_.relations, old.naming.sets.front());
     if (user.empty() && old.constrained) user = "a constraint on its own card";
-    if (!user.empty()) plan_.lost.push_back({nodes_[n], std::move(user), nearest, stays});
+    if (!user.empty()) plan_.lost.push_back({nodes_[n], std::move(user), !old.user.empty(), nearest, stays});
   }
 
   /// Sets that name some of the part's nodes and all of these.
@@ -380,10 +395,8 @@ class ExchangePlanner {
 
   void place_nodes(const spatial::ShellTree& old_surface) {
     std::unordered_map<std::int64_t, NodeIndex> free_by_id;
-    for (std::size_t n = 0; n < nodes_.size(); ++n)
-      if (const OldNode& old = old_nodes_[n];
-          !varies_ && !is_added(model_, nodes_[n]) && !old.naming.any() && !old.constrained && !kept_.contains(nodes_[n]))
-        free_by_id.emplace(model_.node_ids[nodes_[n].value], nodes_[n]);
+    for (const NodeIndex node : nodes_)
+      if (!is_added(model_, node) && !kept_.contains(node)) free_by_id.emplace(model_.node_ids[node.value], node);
     std::optional<NodeOrigin> elsewhere;
     for (std::size_t n = 0; n < mesh_.nodes.size(); ++n) {
       if (plan_.node[n].valid()) continue;
@@ -392,8 +405,7 @@ class ExchangePlanner {
       const NodeOrigin origin = on ? origin_at(node_at_[n], *on) : *elsewhere;
       if (on) note_between(n, origin);
       const auto same = free_by_id.find(mesh_.nodes[n].id);
-      const bool joins = !common_sets(std::span(origin.parent).first(static_cast<std::size_t>(origin.count()))).empty();
-      if (same == free_by_id.end() || joins) {
+      if (same == free_by_id.end() || !may_stand_for(same->second, origin)) {
         plan_.origin[n] = origin;
         continue;
       }
@@ -401,6 +413,14 @@ class ExchangePlanner {
       kept_.insert(same->second);
       free_by_id.erase(same);
     }
+  }
+
+  /// Whether a new node with the number of an old one can have its entry: at its place, or where no card tells the places apart.
+  bool may_stand_for(NodeIndex old, const NodeOrigin& origin) const {
+    if (origin.count() == 1 && origin.parent[0] == old) return true;
+    const OldNode& own = old_nodes_[rank_of(old)];
+    return !varies_ && !own.naming.any() && !own.constrained &&
+           common_sets(std::span(origin.parent).first(static_cast<std::size_t>(origin.count()))).empty();
   }
 
   /// A set that would name nothing keeps its nodes, without the part: no deck may have an empty set.
@@ -451,13 +471,21 @@ class ExchangePlanner {
     return sum / nodes.corners();
   }
 
+  /// Of the part's shells, the mean.
+  double half_side() const {
+    double sum = 0;
+    for (const ShellIndex shell : plan_.old_shells) sum += connections::mean_side(model_, shell);
+    return sum / static_cast<double>(plan_.old_shells.size()) / 2;
+  }
+
   void pair_shells() {
     std::vector<Wanted> wanted;
     for (std::size_t s = 0; s < old_shells_.size(); ++s)
       if (old_shells_[s].alone || old_shells_[s].in_unread) wanted.push_back({s, centre_of(plan_.old_shells[s])});
     if (wanted.empty()) return;
     std::vector<std::uint8_t> taken(mesh_.shells.size(), 0);
-    const PointGrid grid(shell_at_, tolerance_);
+    // Of a divided shell no piece has its centre.
+    const PointGrid grid(shell_at_, std::max(tolerance_, half_side()));
     const auto fits = [&](std::size_t w, std::size_t at) {
       return model_.shell(plan_.old_shells[wanted[w].old]).is_triangle() == is_triangle(at);
     };
@@ -480,9 +508,8 @@ class ExchangePlanner {
     std::optional<ShellIndex> plain;
     for (std::size_t s = 0; s < plan_.old_shells.size(); ++s) {
       const ShellIndex shell = plan_.old_shells[s];
-      if (!is_plain(old_shells_[s])) continue;
-      if (!plain) plain = shell;
-      if (!varies_ && !is_added(model_, shell) && !kept_shells_.contains(shell))
+      if (!plain && is_plain(old_shells_[s])) plain = shell;
+      if (!is_added(model_, shell) && !kept_shells_.contains(shell))
         free_by_id.emplace(std::pair(model_.shell_ids[shell.value], model_.shell(shell).is_triangle()), shell);
     }
     bool noted = false;
@@ -497,7 +524,8 @@ class ExchangePlanner {
       }
       const ShellIndex parent = on ? on->shell : *plain;
       const auto same = free_by_id.find({mesh_.shells[s].id, is_triangle(s)});
-      if (same == free_by_id.end() || !is_plain(parent)) {
+      const auto may_stand = [&](ShellIndex old) { return old == parent || (!varies_ && is_plain(old) && is_plain(parent)); };
+      if (same == free_by_id.end() || !may_stand(same->second)) {
         plan_.parent[s] = parent;
         continue;
       }

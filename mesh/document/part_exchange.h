@@ -17,9 +17,10 @@ namespace prismesh::mesh::document {
 /// A node of the part that something else uses or names, and that no new node takes the place of.
 struct LostNode {
   NodeIndex node;
-  std::string user;    ///< "part:4", "beam:9", "*SET_NODE_LIST 5"
-  double nearest = 0;  ///< distance of the nearest new node
-  bool stays = false;  ///< in the deck, without the part
+  std::string user;         ///< "part:4", "beam:9", "*SET_NODE_LIST 5"
+  bool by_element = false;  ///< the user is a part or an element
+  double nearest = 0;       ///< distance of the nearest new node
+  bool stays = false;       ///< in the deck, without the part
 };
 
 /// A new node on an edge that the part shared with another one, between that one's nodes.

@@ -212,6 +212,29 @@ TEST_F(ReplacePartEdit, lists_what_cards_name_where_no_new_node_is_near) {
   EXPECT_EQ(named(again(document), "set:8", "node"), (std::set<std::int64_t>{2001, 2002, 2026, 2027}));
 }
 
+TEST_F(ReplacePartEdit, the_same_mesh_again_gives_the_same_bytes) {
+  Document document = deck(kOneWeld + kNamedNodes + "*SET_SEGMENT\n        11\n      2001      2002      2027      2026\n");
+  const std::string before = content_of(folder / "flange.k");
+  for (const int part : {1, 2}) {
+    const std::string number = std::to_string(part);
+    const EditReport report =
+        must_apply(document, R"({"edit": "replace_part", "part": )" + number + R"(, "deck": "flange.k", "with": )" + number + "}");
+    EXPECT_THAT(report.lost, IsEmpty());
+  }
+  EXPECT_EQ(saved(document), before);
+}
+
+TEST_F(ReplacePartEdit, a_coarser_row_takes_the_place_of_a_set_along_it) {
+  variant({.columns = 12, .rows = 2, .side = 10});
+  std::string row = "*SET_NODE_LIST\n         8";
+  for (int i = 0; i <= 24; ++i) row += (i % 8 == 0 ? "\n" : "") + printed("%10d", 2001 + i);
+  Document document = deck(row + "\n");
+  const EditReport report = must_apply(document, kReplace);
+  EXPECT_THAT(report.lost, IsEmpty());
+  const Document read = again(document);
+  EXPECT_EQ(named(read, "set:8", "node").size(), 13u);
+}
+
 TEST_F(ReplacePartEdit, the_tolerance_says_how_far_away_a_place_may_be) {
   variant({.low = {1.5, 0, 1.5}});
   Document document = deck("*BOUNDARY_SPC_NODE\n      2001         0         1         1         1\n");
