@@ -419,7 +419,7 @@ class ExchangePlanner {
   bool may_stand_for(NodeIndex old, const NodeOrigin& origin) const {
     if (origin.count() == 1 && origin.parent[0] == old) return true;
     const OldNode& own = old_nodes_[rank_of(old)];
-    return !varies_ && !own.naming.any() && !own.constrained &&
+    return !varies_ && !own.naming.any() && !own.naming.in_segments && !own.constrained &&
            common_sets(std::span(origin.parent).first(static_cast<std::size_t>(origin.count()))).empty();
   }
 
