@@ -265,7 +265,7 @@ struct ReplacePart {
   std::optional<std::int64_t> with;  ///< its part; absent: the only one with shells
   Alignment align;
   std::optional<std::string> units;  ///< of the variant's lengths: "same", "mm", "m", "in"; absent: guessed
-  std::optional<double> tolerance;   ///< what was at a node is at the nearest new node within it; absent: half a new shell's side
+  std::optional<double> tolerance;   ///< what was at a node is at the nearest new node within it; absent: 3/4 of a new shell's side
   /// The variant's mesh; without it the deck is read. The journal has it, so that a replay doesn't depend on the file.
   std::optional<VariantMesh> mesh;
 };

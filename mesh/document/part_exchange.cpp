@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "mesh/connections/sheet_reach.h"
+#include "mesh/deck/editing/ancestors.h"
 #include "mesh/deck/editing/edit_checks.h"
 #include "mesh/deck/editing/new_ids.h"
 #include "mesh/deck/formats/formats.h"
@@ -26,6 +27,7 @@ namespace {
 
 /// A new node comes from one node or one edge of the part if it is nearer to it than this share of the tolerance.
 constexpr double kSnapShare = 0.25;
+constexpr double kToleranceInSides = 0.75;
 /// Shares of corners below this count as none.
 constexpr double kMinShare = 1e-6;
 
@@ -72,7 +74,7 @@ class PointGrid {
 /// The cards that name some of a part's nodes, or some of its shells. Sets that name all of them are no reason to keep one.
 class NamedOfPart {
  public:
-  /// `ids`: those of the deck.
+  /// `ids`: those of the deck, and those that added ones come from.
   NamedOfPart(const Document& document, Referred referred, std::vector<std::int64_t> ids)
       : document_(document), references_(*document.deck->references), referred_(referred), ids_(std::move(ids)), unread_(*document.deck) {}
 
@@ -96,6 +98,18 @@ class NamedOfPart {
     naming.sets.erase(std::unique(naming.sets.begin(), naming.sets.end()), naming.sets.end());
     if (!naming.any()) naming.in_unread = !unread_.check_unread_text(referred_, id);
     return naming;
+  }
+  /// Of one that an edit added: it is in the sets that name all it comes from.
+  Naming of_added(std::span<const std::int64_t> from) {
+    Naming naming;
+    naming.sets = of(from.front()).sets;
+    std::erase_if(naming.sets, [&](std::uint32_t set) { return !deck::all_named_by(references_, referred_, from, set); });
+    return naming;
+  }
+
+  bool in_segments(std::int64_t id) const {
+    return std::ranges::any_of(references_.naming(referred_, id),
+                               [](const Reference& reference) { return reference.role == ReferenceRole::segment; });
   }
 
  private:
@@ -217,11 +231,26 @@ class ExchangePlanner {
     return {document_.deck->files[run.file].bytes.text(), document_.deck->node_line[node.value], run.style};
   }
 
-  void look_at_nodes() {
+  /// The numbers of the deck's nodes that a node comes from; of the deck's own: its own.
+  std::vector<std::int64_t> origins_of(NodeIndex node) const {
     std::vector<std::int64_t> ids;
-    for (const NodeIndex node : nodes_)
-      if (!is_added(model_, node)) ids.push_back(model_.node_ids[node.value]);
-    NamedOfPart named(document_, Referred::node, ids);
+    for (const NodeIndex ancestor : deck::deck_ancestors(model_, node)) ids.push_back(model_.node_ids[ancestor.value]);
+    return ids;
+  }
+  std::vector<std::int64_t> origins_of(ShellIndex shell) const { return {model_.shell_ids[deck_ancestor(model_, shell).value]}; }
+
+  template <class Indices, class Origins>
+  static std::vector<std::int64_t> all_of(const Indices& indices, Origins&& origins) {
+    std::vector<std::int64_t> ids;
+    for (const auto index : indices)
+      for (const std::int64_t id : origins(index)) ids.push_back(id);
+    std::sort(ids.begin(), ids.end());
+    ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+    return ids;
+  }
+
+  void look_at_nodes() {
+    NamedOfPart named(document_, Referred::node, all_of(nodes_, [&](NodeIndex node) { return origins_of(node); }));
     const std::unique_ptr<const deck::CardWriter> writer = deck::card_writer(document_.deck->format);
     std::optional<std::string> usual;
     for (const NodeIndex node : nodes_) {
@@ -233,22 +262,23 @@ class ExchangePlanner {
         const std::string constraints = writer->node_constraints(card_ref(node));
         if (!usual) usual = constraints;
         old.constrained = constraints != *usual;
+      } else {
+        old.naming = named.of_added(origins_of(node));
       }
       old_nodes_.push_back(std::move(old));
     }
   }
 
   void look_at_shells() {
-    std::vector<std::int64_t> ids;
-    for (const ShellIndex shell : plan_.old_shells)
-      if (!is_added(model_, shell)) ids.push_back(model_.shell_ids[shell.value]);
-    NamedOfPart named(document_, Referred::shell, ids);
+    NamedOfPart named(document_, Referred::shell, all_of(plan_.old_shells, [&](ShellIndex shell) { return origins_of(shell); }));
+    NamedOfPart corners(document_, Referred::node, {});
     for (const ShellIndex shell : plan_.old_shells) {
-      old_shells_.push_back(is_added(model_, shell) ? NamedOfPart::Naming() : named.of(model_.shell_ids[shell.value]));
-      // A segment goes with its shell, so such a shell is as one of a set of some.
-      const ShellNodes& nodes = model_.shell(shell);
-      old_shells_.back().in_segments =
-          std::ranges::all_of(nodes.node, [&](NodeIndex node) { return old_nodes_[rank_of(node)].naming.in_segments; });
+      const std::vector<std::int64_t> from = origins_of(shell);
+      old_shells_.push_back(is_added(model_, shell) ? named.of_added(from) : named.of(from.front()));
+      // A segment goes with its shell of the deck, so such a shell is as one of a set of some.
+      const ShellNodes& nodes = document_.opened->model.shell(deck_ancestor(model_, shell));
+      old_shells_.back().in_segments = std::ranges::all_of(
+          nodes.node, [&](NodeIndex node) { return corners.in_segments(document_.opened->model.node_ids[node.value]); });
     }
   }
 
@@ -396,7 +426,7 @@ class ExchangePlanner {
   void place_nodes(const spatial::ShellTree& old_surface) {
     std::unordered_map<std::int64_t, NodeIndex> free_by_id;
     for (const NodeIndex node : nodes_)
-      if (!is_added(model_, node) && !kept_.contains(node)) free_by_id.emplace(model_.node_ids[node.value], node);
+      if (!kept_.contains(node)) free_by_id.emplace(model_.node_ids[node.value], node);
     std::optional<NodeOrigin> elsewhere;
     for (std::size_t n = 0; n < mesh_.nodes.size(); ++n) {
       if (plan_.node[n].valid()) continue;
@@ -509,7 +539,7 @@ class ExchangePlanner {
     for (std::size_t s = 0; s < plan_.old_shells.size(); ++s) {
       const ShellIndex shell = plan_.old_shells[s];
       if (!plain && is_plain(old_shells_[s])) plain = shell;
-      if (!is_added(model_, shell) && !kept_shells_.contains(shell))
+      if (!kept_shells_.contains(shell))
         free_by_id.emplace(std::pair(model_.shell_ids[shell.value], model_.shell(shell).is_triangle()), shell);
     }
     bool noted = false;
@@ -575,7 +605,7 @@ double default_tolerance(const VariantMesh& mesh) {
       sum += (at.at(shell.node[c]) - at.at(shell.node[(c + 1) % 4])).norm();
       ++sides;
     }
-  return sides > 0 ? sum / static_cast<double>(sides) / 2 : 0;
+  return sides > 0 ? kToleranceInSides * sum / static_cast<double>(sides) : 0;
 }
 
 }  // namespace prismesh::mesh::document
