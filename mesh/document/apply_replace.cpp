@@ -27,6 +27,7 @@ namespace prismesh::mesh::document {
 namespace {
 
 constexpr std::size_t kMaxLostConnections = 100;  ///< that a report lists
+constexpr double kMaxTolerance = 12;              ///< in default ones: nine sides of the new shells
 
 /// The part that gets the mesh. Errors: it isn't there, is locked, or has what this version can't exchange.
 Result<PartIndex> find_part_to_replace(const Document& document, const ReplacePart& edit) {
@@ -217,8 +218,11 @@ Result<void> apply_edit(const Document& document, const ReplacePart& edit, Gener
   VariantMesh mesh = *whole->mesh;
   if (const Result<void> sound = check_mesh(mesh); !sound) return sound;
   if (const Result<void> aligned = align_mesh(before.model, whole->align, mesh); !aligned) return aligned;
-  const double tolerance = edit.tolerance.value_or(default_tolerance(mesh));
-  if (!(tolerance > 0) || !std::isfinite(tolerance)) return fail("", "replace_part: the variant's shells have no size");
+  const double usual = default_tolerance(mesh), tolerance = edit.tolerance.value_or(usual);
+  if (!(usual > 0) || !std::isfinite(usual)) return fail("", "replace_part: the variant's shells have no size");
+  if (tolerance > kMaxTolerance * usual)
+    return fail("", "replace_part: the tolerance, " + readable(tolerance, 4) + ", may be " + readable(kMaxTolerance * usual, 4) +
+                        " at most for shells of this size: farther away lie other places");
 
   const PartExchange plan = plan_exchange(document, *part, mesh, tolerance);
   PartExchanger exchanger(document, mesh, plan, next.model);

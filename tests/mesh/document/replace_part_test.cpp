@@ -205,9 +205,8 @@ TEST_F(ReplacePartEdit, lists_what_cards_name_where_no_new_node_is_near) {
   Document document = deck(kNamedNodes);
   const EditReport report = must_apply(document, kReplace);
   ASSERT_EQ(report.lost.size(), 4u);
-  EXPECT_THAT(
-      report.lost[0],
-      HasSubstr("node:2001, which *SET_NODE_LIST 8 names, is no longer connected: the nearest new node is 20 away, more than 1.8"));
+  EXPECT_THAT(report.lost[0],
+              HasSubstr("node:2001, which *SET_NODE_LIST 8 names, is no longer connected: the nearest new node is 20 away, more than 1.8"));
   EXPECT_THAT(report.notes, Contains("4 nodes of the old mesh stay, since other elements or cards have them")) << "no set may be empty";
   EXPECT_EQ(named(again(document), "set:8", "node"), (std::set<std::int64_t>{2001, 2002, 2026, 2027}));
 }
@@ -375,6 +374,7 @@ TEST_F(ReplacePartEdit, refuses_with_a_reason_and_changes_nothing) {
   EXPECT_THAT(refused(document, R"({"edit": "replace_part", "part": 2, "deck": "missing.k"})"), HasSubstr("missing.k"));
   EXPECT_THAT(refused(document, of(R"("part": 2, "units": "m")")), HasSubstr("Lengths aren't scaled"));
   EXPECT_THAT(refused(document, of(R"("part": 2, "units": "furlong")")), HasSubstr("\"units\" must be"));
+  EXPECT_THAT(refused(document, of(R"("part": 2, "tolerance": 25)")), HasSubstr("the tolerance, 25, may be 22.5 at most"));
   EXPECT_THAT(refused(document, of(R"("part": 2, "align": [[1, 2, 3], [2001, 2002, 2101]])")), HasSubstr("lie on a line"));
   EXPECT_THAT(refused(document, of(R"("part": 2, "align": [[1, 49, 393], [2001, 2002, 2101]])")), HasSubstr("never scaled"));
   EXPECT_THAT(refused(document, of(R"("part": 2, "align": [[1, 49, 99999], [2001, 2002, 2101]])")),
