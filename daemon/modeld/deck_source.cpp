@@ -42,6 +42,10 @@ mesh::deck::TextMaker DeckSource::text_maker(bool sandboxed) const {
   };
 }
 
+mesh::document::DeckReader DeckSource::variant_reader(bool sandboxed) const {
+  return [source = *this, sandboxed](const fs::path& path, const Progress& progress) { return source.open(path, sandboxed, progress); };
+}
+
 ipc::ImportOptions DeckSource::options(const Progress& progress) const {
   ipc::ImportOptions how;
   how.program = importer_.program;

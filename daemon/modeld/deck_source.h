@@ -11,6 +11,7 @@
 #include "mesh/deck/editing/text_changes.h"
 #include "mesh/deck/open.h"
 #include "mesh/deck/staged_save.h"
+#include "mesh/document/document.h"
 
 namespace prismesh::modeld {
 
@@ -32,6 +33,8 @@ class DeckSource {
                                       const Progress& progress) const;
   /// Makes the new text of an edited deck. Doesn't need this object any more.
   mesh::deck::TextMaker text_maker(bool sandboxed) const;
+  /// Reads the decks that edits of a document name, as its own deck was read. Likewise.
+  mesh::document::DeckReader variant_reader(bool sandboxed) const;
 
  private:
   ipc::ImportOptions options(const Progress& progress) const;

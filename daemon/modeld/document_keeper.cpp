@@ -87,6 +87,7 @@ Result<DocumentKeeper::OpenDocument> DocumentKeeper::load(const ipc::Open& reque
   Result<Document> document = mesh::document::open(path, std::move(*opened), *options);
   if (!document) return fail(std::move(document.error()));
   document->make_text = decks_.text_maker(request.sandboxed);
+  document->read_variant = decks_.variant_reader(request.sandboxed);
   for (Error& error : unread)
     warnings.push_back({std::move(error.file), error.line, "criteria-not-read",
                         std::move(error.message) + ". The criteria are those that the unsaved edits were made with", 1});

@@ -272,6 +272,7 @@ Result<Document> DocumentKeeper::read_again(const fs::path& path, OpenedDeck ope
   Result<Document> next = mesh::document::open(path, std::move(opened), options);
   if (!next) return next;
   next->make_text = now.make_text;
+  next->read_variant = now.read_variant;
   next->next_number = now.next_number;
   if (grown) {
     auto first = std::make_shared<Generation>(*next->opened);

@@ -29,6 +29,7 @@ Result<void> apply_edit(const Document& document, const Restructure& edit, Gener
 Result<void> apply_edit(const Document& document, const Separate& edit, Generation& next, EditReport& report, const Progress& progress);
 Result<void> apply_edit(const Document& document, const Weld& edit, Generation& next, EditReport& report, const Progress& progress);
 Result<void> apply_edit(const Document& document, const RepairWelds& edit, Generation& next, EditReport& report);
+Result<void> apply_edit(const Document& document, const ReplacePart& edit, Generation& next, EditReport& report, const Progress& progress);
 
 /// Updates the weight of `next` for `shells`, which differ from `before`.
 void update_weight(const Generation& before, const ShellSet& shells, Generation& next);

@@ -10,6 +10,7 @@
 #include "mesh/document/judge_parts.h"
 #include "mesh/document/judging_rules.h"
 #include "mesh/document/parts_of_selection.h"
+#include "mesh/document/read_variant.h"
 #include "mesh/document/self_contained.h"
 #include "mesh/document/weld_places.h"
 
@@ -142,6 +143,10 @@ Result<void> apply_edit(const Document& document, const SetCriteria& edit, Gener
 Result<Edit> self_contained(const Document& document, const Edit& edit) {
   if (const auto* weld = std::get_if<Weld>(&edit)) {
     Result<Weld> whole = with_points(document, *weld);
+    return whole ? Result<Edit>(std::move(*whole)) : fail(whole.error());
+  }
+  if (const auto* replace = std::get_if<ReplacePart>(&edit)) {
+    Result<ReplacePart> whole = with_mesh(document, *replace, {});
     return whole ? Result<Edit>(std::move(*whole)) : fail(whole.error());
   }
   const auto* set = std::get_if<SetCriteria>(&edit);

@@ -4,11 +4,15 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <vector>
 
+#include "base/error.h"
+#include "base/progress.h"
 #include "mesh/deck/data/deck.h"
 #include "mesh/deck/editing/text_changes.h"
+#include "mesh/deck/open.h"
 #include "mesh/document/generation.h"
 #include "mesh/document/settings.h"
 
@@ -21,6 +25,12 @@ struct Branch {
   std::vector<std::shared_ptr<const Generation>> states;  ///< oldest first, never empty
 };
 
+/// Reads another deck that an edit names.
+using DeckReader = std::function<Result<deck::OpenedDeck>(const std::filesystem::path&, const Progress&)>;
+inline Result<deck::OpenedDeck> read_deck(const std::filesystem::path& path, const Progress& progress) {
+  return deck::open(path, progress);
+}
+
 struct Document {
   std::filesystem::path path;
   std::shared_ptr<const deck::Deck> deck;
@@ -31,6 +41,7 @@ struct Document {
   std::shared_ptr<const Generation> opened;                    ///< as read from the deck; what saving compares with
   std::uint64_t next_number = 1;
   deck::TextMaker make_text = deck::text_changes;  ///< the new text of the deck's files when it is saved
+  DeckReader read_variant = read_deck;             ///< reads the decks that edits name, perhaps in another process, as make_text
   std::vector<Branch> branches;  ///< in the order in which they were left; each fork is in `generations` or in another branch
   std::uint64_t next_branch = 1;
 

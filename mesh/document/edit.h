@@ -245,6 +245,38 @@ struct RepairWelds {
   std::optional<double> max_move;              ///< of a node; absent: as long as a joint at the sheet may be
 };
 
+/// The mesh of one part of another deck, in that deck's order.
+struct VariantMesh {
+  struct Node {
+    std::int64_t id = 0;
+    std::array<double, 3> at{};
+  };
+  struct Shell {
+    std::int64_t id = 0;
+    std::array<std::int64_t, 4> node{};  ///< ids; a triangle repeats its third
+  };
+  std::vector<Node> nodes;
+  std::vector<Shell> shells;
+  std::optional<double> thickness;  ///< of its part
+};
+/// A rigid motion that brings three points of the variant onto three of the deck: the first onto the first, the second onto the line
+/// through the second, the third into the plane. Node ids, or coordinates: points, not the nodes nearest to them. Empty: as it stands.
+struct Alignment {
+  std::vector<NodeReference> from;  ///< of the variant
+  std::vector<NodeReference> to;    ///< of the deck
+};
+/// Gives a part the mesh of a part of another deck, the variant (docs/replacing.md). Its number, section and material stay.
+struct ReplacePart {
+  std::int64_t part = 0;
+  std::string deck;                  ///< the variant (a path relative to the deck's folder)
+  std::optional<std::int64_t> with;  ///< its part; absent: the only one with shells
+  Alignment align;
+  std::optional<std::string> units;  ///< of the variant's lengths: "same", "mm", "m", "in"; absent: guessed
+  std::optional<double> tolerance;   ///< what was at a node is at the nearest new node within it; absent: 3/4 of a new shell's side
+  /// The variant's mesh; without it the deck is read. The journal has it, so that a replay doesn't depend on the file.
+  std::optional<VariantMesh> mesh;
+};
+
 struct Undo {};
 struct Redo {};
 /// Makes redo lead to a branch that leaves from the current state. What redo led to before becomes a branch.
@@ -254,7 +286,7 @@ struct TakeBranch {
 
 using Edit =
     std::variant<Select, SelectRegion, SelectLasso, SelectFlange, Grow, Shrink, Invert, SetParts, SetTargetSize, SetCriteria, Translate,
-                 Lift, Slide, Rotate, Move, Relax, Repair, Restructure, Separate, Weld, RepairWelds, Undo, Redo, TakeBranch>;
+                 Lift, Slide, Rotate, Move, Relax, Repair, Restructure, Separate, Weld, RepairWelds, ReplacePart, Undo, Redo, TakeBranch>;
 
 /// The Shaping of a shaping edit; null for the others.
 const Shaping* shaping_of(const Edit& edit);

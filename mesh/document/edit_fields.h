@@ -82,6 +82,22 @@ struct Definition<mesh::document::TargetSize> {
   static void write(Json& json, const mesh::document::TargetSize& value);
   static Problem read(const Json& json, mesh::document::TargetSize& value, Author author);
 };
+template <>
+struct Definition<mesh::document::VariantMesh::Node> {
+  static void write(Json& json, const mesh::document::VariantMesh::Node& value);
+  static Problem read(const Json& json, mesh::document::VariantMesh::Node& value, Author author);
+};
+template <>
+struct Definition<mesh::document::VariantMesh::Shell> {
+  static void write(Json& json, const mesh::document::VariantMesh::Shell& value);
+  static Problem read(const Json& json, mesh::document::VariantMesh::Shell& value, Author author);
+};
+/// "as_it_stands" or [[3 points], [3 points]].
+template <>
+struct Definition<mesh::document::Alignment> {
+  static void write(Json& json, const mesh::document::Alignment& value);
+  static Problem read(const Json& json, mesh::document::Alignment& value, Author author);
+};
 /// An edit within another object. edit_from_json reads one that stands by itself.
 template <>
 struct Definition<mesh::document::Edit> {
@@ -104,6 +120,9 @@ inline constexpr ListLimits kLinePoints{2, 100'000, "points [x, y, z]", "point"}
 inline constexpr ListLimits kWeldPoints{1, 1'000'000, "points [x, y, z]", "point"};
 inline constexpr ListLimits kWelds{1, 100'000, "welds like [\"beam:9\", \"spring:4\"]", ""};
 inline constexpr WholeNumberLimits kSheetsOfWeld{2, 6};
+inline constexpr WholeNumberLimits kPartIds{1, 1'000'000'000'000'000'000};
+inline constexpr ListLimits kVariantNodes{3, 100'000'000, "nodes [id, x, y, z]", "node"};
+inline constexpr ListLimits kVariantShells{1, 100'000'000, "shells [id, node, node, node, node]", "shell"};
 inline constexpr ListLimits kContactKinds{1, 2, "kinds of contact like [\"perforation\", \"penetration\"]", ""};
 inline constexpr TwoWords kNormals{"grab", "each", "\"grab\" (all nodes along the normal at the grab) or \"each\""};
 
@@ -187,6 +206,11 @@ PRISMESH_JSON_OBJECT(mesh::document::Weld, f("flange", m.flange), f("along", m.a
                      f("as", m.as));
 PRISMESH_JSON_OBJECT(mesh::document::RepairWelds, f("at", m.at, kWelds), f("gap", m.gap, kNotNegative),
                      f("max_move", m.max_move, kPositive));
+PRISMESH_JSON_OBJECT(mesh::document::VariantMesh, f.required("nodes", m.nodes, kVariantNodes),
+                     f.required("shells", m.shells, kVariantShells), f("thickness", m.thickness, kPositive));
+PRISMESH_JSON_OBJECT(mesh::document::ReplacePart, f.required("part", m.part, kPartIds), f.required("deck", m.deck),
+                     f("with", m.with, kPartIds), f("align", m.align), f("units", m.units), f("tolerance", m.tolerance, kPositive),
+                     f("mesh", m.mesh));
 PRISMESH_JSON_OBJECT(mesh::document::Undo, );
 PRISMESH_JSON_OBJECT(mesh::document::Redo, );
 PRISMESH_JSON_OBJECT(mesh::document::TakeBranch, f.required("number", m.number));

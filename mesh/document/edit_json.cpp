@@ -19,7 +19,7 @@ using json::listed;
 using json::must_be;
 
 /// Edits that the command line's contract names and that this version doesn't have.
-constexpr std::string_view kNotBuilt[] = {"bond", "replace_part"};
+constexpr std::string_view kNotBuilt[] = {"bond"};
 
 /// The edit that the field "edit" names, with its defaults.
 Result<Edit> blank_edit(const Json& json) {
@@ -131,6 +131,59 @@ Problem Definition<document::NodeReference>::read(const Json& json, document::No
   if (json.is_array()) return json::read(json, value.emplace<std::array<double, 3>>(), author);
   if (!json::read(json, value.emplace<std::int64_t>(), author)) return std::nullopt;
   return must_be("a node's id or its coordinates [x, y, z]", json, author);
+}
+
+namespace {
+
+/// Reads [id, number, ...] with `count` numbers behind the id.
+bool read_row(const Json& json, std::size_t min_count, std::size_t max_count, std::int64_t& id) {
+  if (!json.is_array() || json.size() < min_count + 1 || json.size() > max_count + 1) return false;
+  return !json::read(json[0], id, Author::person) && id > 0;
+}
+
+}  // namespace
+
+void Definition<document::VariantMesh::Node>::write(Json& json, const document::VariantMesh::Node& value) {
+  json = Json::array({value.id, value.at[0], value.at[1], value.at[2]});
+}
+
+Problem Definition<document::VariantMesh::Node>::read(const Json& json, document::VariantMesh::Node& value, Author author) {
+  bool sound = read_row(json, 3, 3, value.id);
+  for (std::size_t k = 0; sound && k < 3; ++k) sound = !json::read(json[k + 1], value.at[k], author);
+  return sound ? std::nullopt : must_be("a node [id, x, y, z]", json, author);
+}
+
+void Definition<document::VariantMesh::Shell>::write(Json& json, const document::VariantMesh::Shell& value) {
+  json = Json::array({value.id, value.node[0], value.node[1], value.node[2]});
+  if (value.node[3] != value.node[2]) json.push_back(value.node[3]);
+}
+
+Problem Definition<document::VariantMesh::Shell>::read(const Json& json, document::VariantMesh::Shell& value, Author author) {
+  bool sound = read_row(json, 3, 4, value.id);
+  for (std::size_t k = 0; sound && k < 4; ++k)
+    sound = !json::read(json[std::min(k + 1, json.size() - 1)], value.node[k], author) && value.node[k] > 0;
+  return sound ? std::nullopt : must_be("a shell [id, node, node, node, node]", json, author);
+}
+
+void Definition<document::Alignment>::write(Json& json, const document::Alignment& value) {
+  if (value.from.empty()) {
+    json = "as_it_stands";
+    return;
+  }
+  json = Json::array();
+  for (const auto* points : {&value.from, &value.to}) json::write(json.emplace_back(), *points);
+}
+
+Problem Definition<document::Alignment>::read(const Json& json, document::Alignment& value, Author author) {
+  value = {};
+  if (json == "as_it_stands") return std::nullopt;
+  const auto is_three = [](const Json& points) { return points.is_array() && points.size() == 3; };
+  if (!json.is_array() || json.size() != 2 || !is_three(json[0]) || !is_three(json[1]))
+    return must_be(
+        "\"as_it_stands\", or three points of the variant and three of the deck, like [[11, 12, 13], [[0, 0, 0], [90, 0, 0], 7]]", json,
+        author);
+  if (Problem problem = json::read(json[0], value.from, author)) return problem;
+  return json::read(json[1], value.to, author);
 }
 
 void Definition<document::TargetSize>::write(Json& json, const document::TargetSize& value) {

@@ -39,6 +39,7 @@ std::span<const EditKind> edit_kinds() {
         {"separate", EditGroup::contact, Separate{}},
         {"weld", joining, Weld{}},
         {"repair_welds", joining, RepairWelds{}},
+        {"replace_part", exchange, ReplacePart{}},
         {"undo", step, Undo{}},
         {"redo", step, Redo{}},
         {"branch", step, TakeBranch{}},

@@ -16,6 +16,7 @@ enum class EditGroup : std::uint8_t {
   mending,    ///< relaxes nodes or changes the structure, and keeps the shape
   joining,    ///< adds connections between sheets
   contact,    ///< moves shells apart, which changes the shape
+  exchange,   ///< gives a part another mesh, and so another shape
   step,       ///< goes to another generation of the history
 };
 

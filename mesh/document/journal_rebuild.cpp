@@ -13,6 +13,7 @@
 #include "mesh/document/delta.h"
 #include "mesh/document/edit_json.h"
 #include "mesh/document/edit_kinds.h"
+#include "mesh/document/exchange_relations.h"
 #include "mesh/document/grow_relations.h"
 #include "mesh/document/history.h"
 #include "mesh/document/judge_parts.h"
@@ -30,13 +31,18 @@ std::string edit_name(std::string_view intent) {
   return name;
 }
 
+bool is_exchange(std::string_view intent) {
+  const EditKind* kind = find_edit_kind(edit_name(intent));
+  return kind != nullptr && kind->group == EditGroup::exchange;
+}
+
 /// Whether the edit gave the model a new shape, which relaxing and repairing keep. Undo and redo across a save are recorded as edits with a
 /// delta.
 bool reshapes(std::string_view intent) {
   const Result<Edit> edit = parse_edit(intent);
   if (!edit) return false;
   const EditGroup group = kind_of(*edit).group;
-  return group == EditGroup::shaping || group == EditGroup::contact || group == EditGroup::step;
+  return group == EditGroup::shaping || group == EditGroup::contact || group == EditGroup::exchange || group == EditGroup::step;
 }
 
 /// The generation that results from applying the record's delta to the current one.
@@ -51,6 +57,7 @@ Result<std::shared_ptr<const Generation>> rebuilt(const Document& document, cons
   grow_relations(document.current().model, *next);
   next->made_by = edit_name(record.intent);
   if (next->made_by == name(RepairWelds{})) place_anew(*moved, *next);
+  if (is_exchange(record.intent)) exchange_relations(document.current().model, *next);
   if (judging != next->judging) judge_by(std::move(judging), *next);
   if (reshapes(record.intent)) next->surface = std::make_shared<const Model>(next->model);
   next->number = document.next_number;

@@ -12,6 +12,7 @@
 #include "mesh/document/branches.h"
 #include "mesh/document/history.h"
 #include "mesh/document/part_marks.h"
+#include "mesh/document/read_variant.h"
 #include "mesh/document/weld_places.h"
 #include "mesh/model/node_set.h"
 #include "mesh/model/topology_change.h"
@@ -38,6 +39,18 @@ Result<Prepared> prepare_step(const Document& document, bool back) {
   prepared.report.elements_added = back ? changes.removed_shells.size() : changes.added_shells.size() + others;
   prepared.report.elements_removed = back ? changes.added_shells.size() + others : changes.removed_shells.size();
   prepared.report.notes.push_back((back ? "undid " : "did again: ") + (back ? document.current() : *prepared.next).made_by);
+  return prepared;
+}
+
+template <class E>
+Result<Prepared> prepare_push(const Document& document, const E& edit, std::string_view edit_name, const Progress& progress);
+
+/// The other deck is read once, so that what is done is what is journalled.
+Result<Prepared> prepare_replace(const Document& document, const ReplacePart& edit, std::string_view edit_name, const Progress& progress) {
+  Result<ReplacePart> whole = with_mesh(document, edit, progress);
+  if (!whole) return fail(whole.error());
+  Result<Prepared> prepared = prepare_push(document, *whole, edit_name, progress);
+  if (prepared) prepared->as_done = std::move(*whole);
   return prepared;
 }
 
@@ -143,6 +156,8 @@ Result<Prepared> prepare(const Document& document, const Edit& edit, const Progr
           return prepare_step(document, std::is_same_v<E, Undo>);
         else if constexpr (std::is_same_v<E, TakeBranch>)
           return prepare_branch(document, each.number);
+        else if constexpr (std::is_same_v<E, ReplacePart>)
+          return prepare_replace(document, each, name(edit), progress);
         else
           return prepare_push(document, each, name(edit), progress);
       },

@@ -149,9 +149,8 @@ void note_missing_files(const Document& document, const Changes& changes, EditRe
         (missing.size() > 1 ? " aren't" : " isn't") + " there; the new nodes and elements may have numbers that it uses");
 }
 
-Result<void> restructure(const Document& document, const repair::Restructuring& change, Generation& next, EditReport& report) {
+void finish_restructuring(const Document& document, Generation& next, EditReport& report) {
   const Generation& before = document.current();
-  if (const Result<void> done = carry_out(document, change, next.model); !done) return done;
   const NodeSet moved = moved_nodes(before.model, next.model);
   settle_growth(before, moved, next);
   const Changes changes = changes_between(before.model, next.model);
@@ -162,6 +161,11 @@ Result<void> restructure(const Document& document, const repair::Restructuring& 
   report.elements_added = changes.added_shells.size();
   report.elements_removed = changes.removed_shells.size();
   note_missing_files(document, changes, report);
+}
+
+Result<void> restructure(const Document& document, const repair::Restructuring& change, Generation& next, EditReport& report) {
+  if (const Result<void> done = carry_out(document, change, next.model); !done) return done;
+  finish_restructuring(document, next, report);
   return {};
 }
 

@@ -19,7 +19,10 @@ repair::Rules rules_for(const Document& document, const Generation& generation);
 /// or the deck can't be written (deck::can_restructure), with place and reason.
 Result<void> restructure(const Document& document, const repair::Restructuring& change, Generation& next, EditReport& report);
 
-/// The second half of `restructure`, for a `next` whose model was changed otherwise: updates adjacency, quality, clusters and weight, and
+/// The second half of `restructure`: `next` has the changed model.
+void finish_restructuring(const Document& document, Generation& next, EditReport& report);
+
+/// The part of it that a delta needs, for a `next` whose model was changed otherwise: updates adjacency, quality, clusters and weight, and
 /// resizes the marks. `moved`: nodes of both whose positions differ, ascending.
 void settle_growth(const Generation& before, const NodeSet& moved, Generation& next);
 

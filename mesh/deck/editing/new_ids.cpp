@@ -110,7 +110,7 @@ Result<std::int64_t> NewIds::placed_node(const NodeOrigin& origin, std::uint32_t
   return search ? find(*search) : fail(search.error());
 }
 
-Result<std::int64_t> NewIds::node(const NodeOrigin& origin) {
+Result<NewIds::IdSearch> NewIds::search_for_node(const NodeOrigin& origin) const {
   Result<IdSearch> search = node_search(origin);
   if (!search) return fail(search.error());
   for (int p = 0; p < origin.count(); ++p)
@@ -118,7 +118,18 @@ Result<std::int64_t> NewIds::node(const NodeOrigin& origin) {
       search->parents.push_back(model_.node_ids[ancestor.value]);
   std::sort(search->parents.begin(), search->parents.end());
   search->parents.erase(std::unique(search->parents.begin(), search->parents.end()), search->parents.end());
-  return find(*search);
+  return search;
+}
+
+Result<std::int64_t> NewIds::node(const NodeOrigin& origin) {
+  const Result<IdSearch> search = search_for_node(origin);
+  return search ? find(*search) : fail(search.error());
+}
+
+Result<bool> NewIds::take_node(const NodeOrigin& origin, std::int64_t wanted) {
+  const Result<IdSearch> search = search_for_node(origin);
+  if (!search) return fail(search.error());
+  return take(*search, wanted);
 }
 
 Result<std::int64_t> NewIds::element(ElementClass element_class, std::uint32_t example) {
@@ -141,16 +152,27 @@ Result<std::int64_t> NewIds::element(ElementClass element_class, std::uint32_t e
   return find(of_examples_.emplace(std::pair(element_class, example), std::move(search)).first->second);
 }
 
-Result<std::int64_t> NewIds::shell(ShellIndex parent) {
+NewIds::IdSearch NewIds::search_for_shell(ShellIndex parent) const {
   const ShellIndex ancestor = deck_ancestor(model_, parent);
   const CardRun& run = deck_.run_of(ancestor);
   const std::int64_t offset = deck_.offsets_of(run).element;
-  return find({Referred::shell,
-               {model_.shell_ids[ancestor.value]},
-               run.file,
-               deck_.last_ids[run.file].shell,
-               std::max<std::int64_t>(1, offset + 1),
-               writer_->largest_shell_id(run.style) + std::min<std::int64_t>(offset, 0)});
+  return {Referred::shell,
+          {model_.shell_ids[ancestor.value]},
+          run.file,
+          deck_.last_ids[run.file].shell,
+          std::max<std::int64_t>(1, offset + 1),
+          writer_->largest_shell_id(run.style) + std::min<std::int64_t>(offset, 0)};
+}
+
+Result<std::int64_t> NewIds::shell(ShellIndex parent) { return find(search_for_shell(parent)); }
+
+Result<bool> NewIds::take_shell(ShellIndex parent, std::int64_t wanted) { return take(search_for_shell(parent), wanted); }
+
+bool NewIds::take(const IdSearch& search, std::int64_t wanted) {
+  if (wanted < search.min || wanted > search.max || first_free(search, wanted, wanted) != wanted) return false;
+  std::vector<std::int64_t>& given = given_[search.referred];
+  given.insert(std::upper_bound(given.begin(), given.end(), wanted), wanted);
+  return true;
 }
 
 Result<std::int64_t> NewIds::find(const IdSearch& search) {

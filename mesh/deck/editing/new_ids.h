@@ -30,6 +30,9 @@ class NewIds {
   /// Errors: no id is left (with the file and what holds the others), or no card of the deck can be the new card's example.
   Result<std::int64_t> node(const NodeOrigin& origin);
   Result<std::int64_t> shell(ShellIndex parent);
+  /// Whether the wanted id is free for what comes from these. If so, it isn't given again.
+  Result<bool> take_node(const NodeOrigin& origin, std::int64_t wanted);
+  Result<bool> take_shell(ShellIndex parent, std::int64_t wanted);
   /// For a node that lies between no others, with a card like those of its origin. `joins`: as PlacedNode.
   Result<std::int64_t> placed_node(const NodeOrigin& origin, std::uint32_t joins);
   /// For an element that is no shell. `example`: as TopologyChange::element_examples.
@@ -46,6 +49,10 @@ class NewIds {
   };
   /// Without parents. Errors: as node.
   Result<IdSearch> node_search(const NodeOrigin& origin) const;
+  /// With parents. Errors: as node.
+  Result<IdSearch> search_for_node(const NodeOrigin& origin) const;
+  IdSearch search_for_shell(ShellIndex parent) const;
+  bool take(const IdSearch& search, std::int64_t wanted);
   Result<std::int64_t> find(const IdSearch& search);
   std::optional<std::int64_t> first_free(const IdSearch& search, std::int64_t from, std::int64_t to);
   std::int64_t beyond_taken(Referred referred, std::int64_t id);
