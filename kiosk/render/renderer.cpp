@@ -22,7 +22,8 @@ constexpr double kMinViewerMm = 20;
 /// By which an image takes some 25 ms on two cores, and few milliseconds on a graphics card.
 constexpr std::size_t kMovingTrianglesInSoftware = 60'000;
 constexpr std::size_t kMovingTriangles = 4'000'000;
-constexpr double kHalfGapPixels = 4;  ///< half the width of the ground between two views
+constexpr double kHalfGapPixels = 4;                                 ///< half the width of the ground between two views
+constexpr std::size_t kFirstPiece = 20'000, kSmallestPiece = 1'000;  ///< elements
 
 /// The input from which the scene in the eyes' images was drawn.
 struct DrawnScene {
@@ -90,6 +91,16 @@ struct Renderer::Impl {
   Images fine;
   Images coarse;                    ///< without multisampling
   std::uint64_t scene_version = 0;  ///< increases with each change of the model or the preview
+  Images* last = nullptr;           ///< of the last picture
+  /// A scene that is drawn in pieces into `fine`.
+  struct Pieces {
+    DrawnScene scene;
+    std::size_t image = 0;  ///< that is being drawn
+    std::size_t done = 0;   ///< elements of it
+    std::size_t count = 0;
+  };
+  std::optional<Pieces> pieces;
+  std::size_t at_once = kFirstPiece;  ///< elements of a piece that are drawn before the clock is looked at
   WeavePass weave;
   // The last composition. Kept, as most pictures differ in nothing that it depends on.
   Composition composition;
@@ -109,7 +120,10 @@ struct Renderer::Impl {
   Impl& operator=(const Impl&) = delete;
 
   Result<void> draw_scene(Images& images, const Picture& picture, int width, int height, int samples);
-  void draw_views(const Picture& picture, const EyeView& eye, int width);
+  Result<void> prepare(Images& images, const Picture& picture, int samples);
+  void draw_views(const Picture& picture, const EyeView& eye, int width, DrawSpan& span);
+  Result<bool> draw_next(Pieces& next, Clock& clock, std::int64_t budget_ns);
+  bool can_wait_with(const DrawnScene& wanted) const;
   void compose_for(const Picture& picture, int width, int height);
   bool make_item_buffer(int width, int height);
   void read_items(int width, int height);
@@ -141,7 +155,10 @@ Result<void> Renderer::set_model(std::shared_ptr<const ModelSource> model) {
   return done;
 }
 
-Result<void> Renderer::set_levels(std::shared_ptr<const MadeLevels> made) { return impl_->layer.set_levels(std::move(made)); }
+Result<void> Renderer::set_levels(std::shared_ptr<const MadeLevels> made) {
+  impl_->pieces.reset();  // shells are drawn in another order
+  return impl_->layer.set_levels(std::move(made));
+}
 
 bool Renderer::levels_are_current() const {
   return impl_->layer.empty() || (impl_->layer.shell_draws().has_levels() && !impl_->layer.shell_draws().is_out_of_date());
@@ -222,13 +239,18 @@ Result<DrawReport> Renderer::draw(const Picture& picture, unsigned framebuffer, 
   DrawnScene wanted{picture, impl_->composition.images, width, height, impl_->scene_version};
   wanted.picture.overlay = nullptr;
   // A moving picture is drawn coarsely only if the fine images don't show its scene already.
-  const bool fine = !picture.moving || (impl_->fine.kept && impl_->fine.kept->same_scene(wanted));
-  Impl::Images& images = fine ? impl_->fine : impl_->coarse;
-  if (!images.kept || !images.kept->same_scene(wanted)) {
-    if (Result<void> drawn = impl_->draw_scene(images, picture, width, height, fine ? impl_->options.samples : 1); !drawn)
+  const bool fine = !(picture.moving || picture.waiting) || (impl_->fine.kept && impl_->fine.kept->same_scene(wanted));
+  const bool waits = !fine && picture.waiting && impl_->can_wait_with(wanted);
+  Impl::Images& images = waits ? *impl_->last : fine ? impl_->fine : impl_->coarse;
+  if (!waits && (!images.kept || !images.kept->same_scene(wanted))) {
+    if (fine || !impl_->pieces || !impl_->pieces->scene.same_scene(wanted)) impl_->pieces.reset();
+    Picture scene = wanted.picture;
+    scene.moving = !fine;
+    if (Result<void> drawn = impl_->draw_scene(images, scene, width, height, fine ? impl_->options.samples : 1); !drawn)
       return fail(drawn.error());
     images.kept = std::move(wanted);
   }
+  impl_->last = &images;
   const std::vector<ComposedImage>& composed = impl_->composition.images;
   for (std::size_t i = 0; i < composed.size(); ++i) {
     reset_after_overlay();
@@ -258,28 +280,96 @@ void Renderer::Impl::compose_for(const Picture& picture, int width, int height) 
 
 Result<void> Renderer::Impl::draw_scene(Images& images, const Picture& picture, int width, int height, int samples) {
   images.kept.reset();
+  if (Result<void> prepared = prepare(images, picture, samples); !prepared) return prepared;
   const std::vector<ComposedImage>& composed = composition.images;
-  if (Result<void> sized = images.eyes.resize(composed.front().width, composed.front().height, samples); !sized) return sized;
-  if (Result<void> prepared = scene.prepare(picture, layer); !prepared) return prepared;
-  if (picture.two_views) {
-    Picture beside = picture;
-    beside.shadows = false;
-    if (Result<void> prepared = scene.prepare(beside, other_layer); !prepared) return prepared;
-  }
   for (std::size_t i = 0; i < composed.size(); ++i) {
+    DrawSpan whole;
     images.eyes.bind_scene();
-    draw_views(picture, eye_view(picture, composed[i], width, height), width);
+    draw_views(picture, eye_view(picture, composed[i], width, height), width, whole);
     images.eyes.keep_scene(static_cast<int>(i));
   }
   ++figures.scenes_drawn;
   return {};
 }
 
+Result<void> Renderer::Impl::prepare(Images& images, const Picture& picture, int samples) {
+  const ComposedImage& first = composition.images.front();
+  if (Result<void> sized = images.eyes.resize(first.width, first.height, samples); !sized) return sized;
+  if (Result<void> prepared = scene.prepare(picture, layer); !prepared) return prepared;
+  if (picture.two_views) {
+    Picture beside = picture;
+    beside.shadows = false;
+    if (Result<void> prepared = scene.prepare(beside, other_layer); !prepared) return prepared;
+  }
+  return {};
+}
+
+/// Whether the last picture's scene may stay while this one is drawn in pieces: moving pictures would cost as much, and it has the size.
+bool Renderer::Impl::can_wait_with(const DrawnScene& wanted) const {
+  if (layer.empty() || layer.shell_draws().has_levels() || last == nullptr || !last->kept) return false;
+  const DrawnScene& kept = *last->kept;
+  const auto same_size = [](const ComposedImage& a, const ComposedImage& b) { return a.width == b.width && a.height == b.height; };
+  return kept.width == wanted.width && kept.height == wanted.height &&
+         std::equal(kept.images.begin(), kept.images.end(), wanted.images.begin(), wanted.images.end(), same_size);
+}
+
+Result<bool> Renderer::draw_piece(const Picture& picture, int width, int height, Clock& clock, std::int64_t budget_ns) {
+  Impl& impl = *impl_;
+  impl.compose_for(picture, width, height);
+  DrawnScene wanted{picture, impl.composition.images, width, height, impl.scene_version};
+  wanted.picture.overlay = nullptr;
+  if (impl.fine.kept && impl.fine.kept->same_scene(wanted)) return true;
+  if (!impl.pieces || !impl.pieces->scene.same_scene(wanted)) impl.pieces.emplace().scene = std::move(wanted);
+  const ComposedImage& first = impl.composition.images.front();
+  if (impl.fine.eyes.width() != first.width || impl.fine.eyes.height() != first.height) impl.fine.kept.reset();
+  reset_after_overlay();
+  const Result<bool> whole = impl.draw_next(*impl.pieces, clock, budget_ns);
+  if (!whole) {
+    impl.pieces.reset();
+    return whole;
+  }
+  if (!*whole) return false;
+  impl.fine.eyes.keep_aside();
+  impl.fine.kept = std::move(impl.pieces->scene);
+  impl.figures.pieces_drawn = impl.pieces->count;
+  impl.pieces.reset();
+  ++impl.figures.scenes_drawn;
+  return true;
+}
+
+/// How many elements are drawn before the clock is looked at again follows from how long the last ones took.
+Result<bool> Renderer::Impl::draw_next(Pieces& next, Clock& clock, std::int64_t budget_ns) {
+  const std::int64_t start = clock.now_ns();
+  const Picture& picture = next.scene.picture;
+  if (Result<void> prepared = prepare(fine, picture, options.samples); !prepared) return fail(prepared.error());
+  ++next.count;
+  std::int64_t now = start, took = 0;
+  do {
+    const std::int64_t before = now;
+    DrawSpan span(next.done, next.done + at_once);
+    fine.eyes.bind_scene();
+    draw_views(picture, eye_view(picture, next.scene.images[next.image], next.scene.width, next.scene.height), next.scene.width, span);
+    next.done += at_once;
+    if (!span.leaves_some()) {
+      if (!fine.eyes.put_aside(static_cast<int>(next.image))) return fail("OpenGL", "there is no graphics memory for a picture at rest");
+      ++next.image;
+      next.done = 0;
+    }
+    glFinish();
+    now = clock.now_ns();
+    took = std::max<std::int64_t>(now - before, 1);
+    const double share = std::clamp(static_cast<double>(budget_ns) / static_cast<double>(took), 0.5, 2.0);
+    at_once = std::max(kSmallestPiece, static_cast<std::size_t>(static_cast<double>(at_once) * share));
+    if (next.image == next.scene.images.size()) return true;
+  } while (now - start + took <= budget_ns);
+  return false;
+}
+
 /// Draws the model over the whole picture, or two views side by side.
-void Renderer::Impl::draw_views(const Picture& picture, const EyeView& eye, int width) {
-  scene.begin(eye);
+void Renderer::Impl::draw_views(const Picture& picture, const EyeView& eye, int width, DrawSpan& span) {
+  scene.begin(eye, span);
   if (!picture.two_views)
-    return scene.draw(picture, {layer, fields[0], picture.field[0], paint}, eye, {options.glyph_cap, options.moving_triangles});
+    return scene.draw(picture, {layer, fields[0], picture.field[0], paint}, eye, {options.glyph_cap, options.moving_triangles}, span);
   for (const Pane pane : {Pane::model, Pane::other}) {
     const bool right = (pane == Pane::model) == picture.two_views->model_on_right;
     Picture half = picture;
@@ -294,10 +384,10 @@ void Renderer::Impl::draw_views(const Picture& picture, const EyeView& eye, int 
       half.shadows = false;
     }
     const double middle = picture.two_views->border * width;
-    scene.begin_pane(eye, right ? middle + kHalfGapPixels : 0, right ? width : middle - kHalfGapPixels);
+    scene.begin_pane(eye, right ? middle + kHalfGapPixels : 0, right ? width : middle - kHalfGapPixels, span);
     const auto at = static_cast<std::size_t>(pane);
     ModelLayer& shown = pane == Pane::model ? layer : other_layer;
-    scene.draw(half, {shown, fields[at], picture.field[at], paint}, eye, {options.glyph_cap, options.moving_triangles});
+    scene.draw(half, {shown, fields[at], picture.field[at], paint}, eye, {options.glyph_cap, options.moving_triangles}, span);
   }
   glDisable(GL_STENCIL_TEST);
 }

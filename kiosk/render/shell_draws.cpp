@@ -190,14 +190,15 @@ void ShellDraws::find_held(const ModelTable& table) {
   held_ = mesh::lod::groups_over(made_->levels, held);
 }
 
-void ShellDraws::draw_all(const Eigen::Matrix4d& clip_from_model) const {
+void ShellDraws::draw_all(const Eigen::Matrix4d& clip_from_model, DrawSpan& span) const {
   glBindVertexArray(all_array_.get());
   const ViewVolume volume(clip_from_model);
   std::size_t first = 0, last = 0;  // neighbours are drawn in one call
   const auto flush = [&] {
-    if (last > first)
-      glDrawElements(GL_TRIANGLES, static_cast<GLsizei>((last - first) * kCorners.size()), GL_UNSIGNED_INT,
-                     reinterpret_cast<const void*>(first * kCorners.size() * sizeof(std::uint32_t)));
+    const DrawSpan::Part now = span.take(last - first);
+    if (now.count > 0)
+      glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(now.count * kCorners.size()), GL_UNSIGNED_INT,
+                     reinterpret_cast<const void*>((first + now.first) * kCorners.size() * sizeof(std::uint32_t)));
   };
   for (const Run& run : runs_) {
     if (!run.shown || !volume.may_hold(run.bounds)) continue;

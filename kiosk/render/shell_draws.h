@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "kiosk/render/draw_span.h"
 #include "kiosk/render/model_textures.h"
 #include "mesh/lod/choose.h"
 #include "mesh/lod/levels.h"
@@ -34,9 +35,9 @@ class ShellDraws {
   /// Whether nodes have moved since the levels were made.
   bool is_out_of_date() const { return moved_; }
 
-  /// Draws all shells that may be seen, four vertices each: gl_VertexID is four times the shell, plus the corner. The program, the textures
-  /// and their uniforms must be set.
-  void draw_all(const Eigen::Matrix4d& clip_from_model) const;
+  /// Draws those in the span of all shells that may be seen, four vertices each: gl_VertexID is four times the shell, plus the corner. The
+  /// program, the textures and their uniforms must be set.
+  void draw_all(const Eigen::Matrix4d& clip_from_model, DrawSpan& span) const;
   /// Chooses what is drawn for a viewpoint (deck's coordinates): the finest that has at most `triangles`, off by 1 to 8 pixels.
   /// Precondition: has_levels().
   void choose(const mesh::lod::Viewpoint& from, const Eigen::Matrix4d& clip_from_model, std::size_t triangles);

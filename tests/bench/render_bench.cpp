@@ -13,6 +13,7 @@
 #include <benchmark/benchmark.h>
 #include <unistd.h>
 
+#include "base/clock.h"
 #include "kiosk/display/headless.h"
 #include "kiosk/levels_worker.h"
 #include "kiosk/render/make_levels.h"
@@ -104,6 +105,33 @@ BENCHMARK(turning_with_levels)
     ->Unit(benchmark::kMillisecond)
     ->MeasureProcessCPUTime()
     ->UseRealTime();
+
+/// A picture at rest of the million for both eyes, after one from another side. Argument: 0 in one go, else in pieces of so many
+/// milliseconds. `longest_ms` is the longest wall time of a piece, and so between two looks at the input.
+void at_rest(benchmark::State& state) {
+  Stage stage(0, "side-by-side", 1);
+  static const auto levels = std::make_shared<const render::MadeLevels>(render::make_levels(*million(0)).value());
+  (void)stage.renderer->set_levels(levels);
+  stage.picture.moving = false;
+  MonotonicClock clock;
+  double longest = 0;
+  for (auto _ : state) {
+    stage.picture.view = stereo::orbit(stage.picture.view, 0.1, 0);
+    for (bool whole = state.range(0) == 0; !whole;) {
+      const std::int64_t before = clock.now_ns();
+      whole = stage.renderer->draw_piece(stage.picture, kWidth, kHeight, clock, state.range(0) * 1'000'000).value();
+      longest = std::max(longest, static_cast<double>(clock.now_ns() - before) * 1e-6);
+    }
+    const std::int64_t before = clock.now_ns();
+    benchmark::DoNotOptimize(stage.renderer->draw(stage.picture, stage.target.framebuffer(), kWidth, kHeight));
+    glFinish();
+    longest = std::max(longest, static_cast<double>(clock.now_ns() - before) * 1e-6);
+  }
+  state.counters["longest_ms"] = longest;
+  state.counters["pieces"] = static_cast<double>(stage.renderer->figures().pieces_drawn);
+  state.SetLabel(reinterpret_cast<const char*>(glGetString(GL_RENDERER)));
+}
+BENCHMARK(at_rest)->ArgName("budget_ms")->Arg(0)->Arg(50)->Arg(25)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 
 std::size_t resident_bytes() {
   std::ifstream in("/proc/self/statm");

@@ -184,6 +184,122 @@ TEST_F(RenderLevels, hold_selected_shells_apart) {
   EXPECT_GT(same, selected - selected / 20);
 }
 
+/// A scene with all that is drawn: transparent parts, glyphs, selected nodes, a marked shell, a cut, shadows, a handle and two views.
+class RenderPieces : public RenderLevels {
+ protected:
+  static test::TestSource full_source() {
+    test::TestSource source = waves();
+    mesh::quality::ShellState warns;
+    warns.warn = 1;
+    for (std::size_t s = 0; s < source.shell_nodes.size(); s += 17) source.shell_quality[s] = warns;
+    for (std::size_t n = 5000; n < 9000; ++n) source.node_marks[n] = mesh::document::kSelected;
+    for (std::size_t s = 900; s < 1300; ++s) source.shell_marks[s] = mesh::document::kSelected;
+    return source;
+  }
+  Picture full_picture(const test::TestSource& source, const std::string& profile) {
+    make_renderer({.samples = 4});
+    show(source);
+    EXPECT_TRUE(renderer_->set_other(std::make_shared<test::TestSource>(source)));
+    EXPECT_TRUE(renderer_->set_part_paints(std::vector<PartPaint>{{}, {.transparent = true}}));
+    Picture picture = fitted(profile, "iso", kLevelsWidth, kLevelsHeight);
+    picture.marked = mesh::ShellIndex(std::size_t{77});
+    picture.shadows = true;
+    picture.handle = Handle{mesh::Vec3(300, 250, 0), mesh::Vec3::UnitZ()};
+    picture.two_views.emplace();
+    return picture;
+  }
+  /// Draws the scene at rest with a clock that moves on by 10 ms at each look. Returns the number of pieces.
+  std::size_t draw_in_pieces(const Picture& picture, std::int64_t budget_ns, std::size_t max = 1000) {
+    class Ticking final : public Clock {
+     public:
+      std::int64_t now_ns() override { return now_ += 10'000'000; }
+
+     private:
+      std::int64_t now_ = 0;
+    } clock;
+    for (std::size_t pieces = 1; pieces <= max; ++pieces) {
+      const Result<bool> whole = renderer_->draw_piece(picture, kLevelsWidth, kLevelsHeight, clock, budget_ns);
+      EXPECT_TRUE(whole) << whole.error().text();
+      if (!whole || *whole) return pieces;
+    }
+    return 0;
+  }
+};
+
+TEST_F(RenderPieces, make_the_same_picture_as_one_go) {
+  const test::TestSource source = full_source();
+  for (const char* profile : {"mono", "side-by-side"}) {
+    const Picture picture = full_picture(source, profile);
+    const Image one_go = draw(picture, kLevelsWidth, kLevelsHeight);
+    full_picture(source, profile);
+    const std::size_t pieces = draw_in_pieces(picture, 1'000'000);
+    EXPECT_GT(pieces, 20u);
+    EXPECT_EQ(renderer_->figures().pieces_drawn, pieces);
+    const std::size_t scenes = renderer_->figures().scenes_drawn;
+    const Image in_pieces = draw(picture, kLevelsWidth, kLevelsHeight);
+    EXPECT_EQ(renderer_->figures().scenes_drawn, scenes) << "the picture shows the pieces";
+    EXPECT_EQ(one_go.rgb, in_pieces.rgb) << profile;
+  }
+}
+
+TEST_F(RenderPieces, are_few_where_there_is_time) {
+  const test::TestSource source = full_source();
+  EXPECT_EQ(draw_in_pieces(full_picture(source, "mono"), 1'000'000'000'000), 1u);
+}
+
+TEST_F(RenderPieces, are_given_up_for_another_picture_model_or_levels) {
+  test::TestSource source = full_source();
+  Picture picture = full_picture(source, "mono");
+  const stereo::View before = picture.view;
+  picture.view = stereo::orbit(before, 0.4, 0);
+  const Image expected = draw(picture, kLevelsWidth, kLevelsHeight);
+  picture.view = before;
+  EXPECT_EQ(draw_in_pieces(picture, 1'000'000, 5), 0u);
+  picture.view = stereo::orbit(before, 0.4, 0);
+  full_picture(source, "mono");
+  EXPECT_EQ(draw_in_pieces(picture, 1'000'000, 5), 0u);
+  set_levels(source);  // another order of shells
+  EXPECT_EQ(draw_in_pieces(picture, 1'000'000, 5), 0u);
+  Picture beside = picture;
+  beside.moving = true;
+  beside.view = stereo::orbit(before, 0.9, 0.3);
+  draw(beside, kLevelsWidth, kLevelsHeight);  // its shadows lie otherwise
+  EXPECT_GT(draw_in_pieces(picture, 1'000'000), 20u);
+  EXPECT_EQ(draw(picture, kLevelsWidth, kLevelsHeight).rgb, expected.rgb);
+  // Half of the pieces show the model before a node moved.
+  picture.two_views.reset();
+  EXPECT_TRUE(renderer_->set_part_paints({}));
+  EXPECT_EQ(draw_in_pieces(picture, 1'000'000, 5), 0u);
+  source.positions[75 * 151 + 75].z() += 200;
+  source.touch(ipc::SnapshotArray::positions, (75 * 151 + 75) / mesh::kChunkSize);
+  show(source);
+  draw_in_pieces(picture, 1'000'000);
+  const Image moved = draw(picture, kLevelsWidth, kLevelsHeight);
+  beside.moving = false;
+  draw(beside, kLevelsWidth, kLevelsHeight);
+  EXPECT_EQ(moved.rgb, draw(picture, kLevelsWidth, kLevelsHeight).rgb);
+}
+
+TEST_F(RenderPieces, leave_what_is_shown_until_they_are_whole) {
+  const test::TestSource source = full_source();
+  Picture picture = full_picture(source, "mono");
+  picture.two_views.reset();
+  const Image first = draw(picture, kLevelsWidth, kLevelsHeight);
+  Picture turned = picture;
+  turned.view = stereo::orbit(picture.view, 0.4, 0);
+  EXPECT_EQ(draw_in_pieces(turned, 1'000'000, 5), 0u);
+  turned.waiting = true;
+  EXPECT_EQ(draw(turned, kLevelsWidth, kLevelsHeight).rgb, first.rgb) << "without levels the last scene stays";
+  set_levels(source);
+  const Image coarse = draw(turned, kLevelsWidth, kLevelsHeight);
+  EXPECT_NE(coarse.rgb, first.rgb) << "a moving picture stands for it";
+  EXPECT_GT(renderer_->figures().moving_triangles, 0u);
+  turned.waiting = false;
+  EXPECT_GT(draw_in_pieces(turned, 1'000'000), 20u);
+  turned.waiting = true;
+  EXPECT_NE(draw(turned, kLevelsWidth, kLevelsHeight).rgb, coarse.rgb) << "what is whole is shown";
+}
+
 TEST(LevelsWorker, makes_levels_once_the_model_rests_and_stops_for_another) {
   const auto large = std::make_shared<test::TestSource>(waves(200)), other = std::make_shared<test::TestSource>(waves(200));
   other->key = 2;
