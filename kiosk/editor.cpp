@@ -113,6 +113,10 @@ Result<void> Editor::make_levels() {
   return renderer.set_levels(std::move(made));
 }
 
+bool Editor::prepare_picking(std::int64_t budget_ns) {
+  return context_.renderer.draw_items_piece(toolkit::aim(context_.view), context_.clock, budget_ns);
+}
+
 /// The newest state becomes the one that is shown.
 void Editor::take_newest() {
   toolkit::ShownModel& shown = context_.shown;

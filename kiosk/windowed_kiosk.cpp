@@ -23,6 +23,7 @@ constexpr std::int64_t kWheelRestNs = 250'000'000;   ///< the wheel counts as st
 constexpr std::int64_t kPointerRestNs = 60'000'000;  ///< the pointer rests this long after its last move
 constexpr std::int64_t kWordNs = 220'000'000;        ///< letters of a word come faster than that
 constexpr std::int64_t kPieceNs = 50'000'000;        ///< of a picture at rest, between two looks at the input
+constexpr std::int64_t kLongTurnNs = 30'000'000;
 constexpr std::int64_t kForEverNs = -1;
 constexpr std::int64_t kDaemonTriesNs = 1'000'000'000;  ///< between two attempts to reach a missing device daemon, or the pen's process
 constexpr std::int64_t kPenLookNs = 8'000'000;          ///< between two looks at a pen, which moves without a message
@@ -61,7 +62,7 @@ Result<void> WindowedKiosk::run() {
     if (*drawn) watch_.shown();
     watch_.turn(station_.clock.now_ns(), stale());
     rest_traced_ = rest_traced_ && !*drawn;
-    if (*drawn || piece_drawn_ || !events->empty()) continue;
+    if (*drawn || piece_drawn_ || put_off_ || !events->empty()) continue;
     if (!stale() && !std::exchange(rest_traced_, true)) trace_rest();
     wait();
     looked_ns_ = station_.clock.now_ns();
@@ -79,7 +80,7 @@ void WindowedKiosk::looks() {
 /// Looks at the eyes and draws, if it is time to and something has changed. Returns whether a picture was drawn.
 Result<bool> WindowedKiosk::beat() {
   if (!stale() && !station_.eyes.watches()) return false;
-  if (!piece_drawn_ && station_.clock.now_ns() < station_.eyes.next_look_ns()) return false;
+  if (!piece_drawn_ && !put_off_ && station_.clock.now_ns() < station_.eyes.next_look_ns()) return false;
   const bool seen_otherwise = station_.look();
   if (!seen_otherwise && !stale()) return false;
   return draw();
@@ -88,9 +89,11 @@ Result<bool> WindowedKiosk::beat() {
 /// A large model at rest is drawn in pieces, between which input is looked at; until the picture is whole, one that is drawn for speed
 /// shows what has changed. Returns whether a picture was shown.
 Result<bool> WindowedKiosk::draw() {
-  const auto& shown = station_.editor.context().shown.snapshot;
-  const bool large = shown && shown->shell_count() > LevelsWorker::kFewestShells;
+  const bool large = shows_large();
   const bool changed = dirty_ || station_.editor.changes() != shown_changes_;
+  // A turn that took over a large model looks at the input before it draws.
+  if (large && station_.clock.now_ns() - looked_ns_ > kLongTurnNs && !std::exchange(put_off_, true)) return false;
+  put_off_ = false;
   auto pace = large && (moving() || gliding()) ? Screen::Pace::moving : Screen::Pace::rest;
   if (!large || pace == Screen::Pace::moving) {
     piece_drawn_ = false;
@@ -103,6 +106,7 @@ Result<bool> WindowedKiosk::draw() {
     shown_moving_ = true;
     watch_.draws_piece();
     if (!*whole) return false;
+    rests_ns_ = station_.clock.now_ns();  // what picking needs is drawn ahead
   }
   if (Result<void> drawn = show(pace); !drawn) return fail(drawn.error());
   return true;
@@ -262,9 +266,18 @@ std::optional<input::Pixel> WindowedKiosk::pointer_on_picture() const {
 /// The pointer has rested: what is under it is told.
 void WindowedKiosk::point() {
   if (!rests_ns_ || moving() || station_.clock.now_ns() < *rests_ns_) return;
+  if (shows_large()) {
+    if (piece_drawn_) return;  // first the picture
+    if (!station_.editor.prepare_picking(kPieceNs)) return;
+  }
   rests_ns_.reset();
   if (station_.screen.gui().popup_open()) return;  // a menu may be about what was under it
   station_.editor.point_at(pointer_on_picture());
+}
+
+bool WindowedKiosk::shows_large() const {
+  const auto& shown = station_.editor.context().shown.snapshot;
+  return shown && shown->shell_count() > LevelsWorker::kFewestShells;
 }
 
 Result<void> WindowedKiosk::settle() {

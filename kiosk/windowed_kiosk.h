@@ -28,6 +28,7 @@ class WindowedKiosk {
   Result<void> fire_held();
   Result<void> settle();
   void point();
+  bool shows_large() const;
   void offer_copied();
   void find_place() { station_.place(window_.monitor(), window_.position()); }
   /// The display's own pointer isn't woven, and some displays have none.
@@ -68,6 +69,7 @@ class WindowedKiosk {
   bool dirty_ = true;
   bool fullscreen_ = false;
   bool shown_moving_ = false;  ///< the last picture was drawn for speed, or waits for one at rest
+  bool put_off_ = false;       ///< a picture, as the last turn was long
   bool piece_drawn_ = false;   ///< in the last turn, of a picture at rest
   std::int64_t wheel_rest_ns_ = 0;
   std::optional<std::int64_t> rests_ns_;  ///< when the pointer will have rested; nothing: it has been looked at

@@ -131,7 +131,7 @@ Result<void> ModelLayer::set_model(std::shared_ptr<const ModelSource> source) {
 }
 
 Result<void> ModelLayer::set_levels(std::shared_ptr<const MadeLevels> made) {
-  return table_ ? shell_draws_.set_levels(std::move(made), *table_, textures_) : Result<void>();
+  return table_ ? shell_draws_.set_levels(std::move(made), *table_) : Result<void>();
 }
 
 Result<void> ModelLayer::update_line_elements(bool changed) {

@@ -1,6 +1,7 @@
 #include "kiosk/render/renderer.h"
 
 #include <algorithm>
+#include <limits>
 #include <string_view>
 #include <tuple>
 #include <utility>
@@ -22,8 +23,8 @@ constexpr double kMinViewerMm = 20;
 /// By which an image takes some 25 ms on two cores, and few milliseconds on a graphics card.
 constexpr std::size_t kMovingTrianglesInSoftware = 60'000;
 constexpr std::size_t kMovingTriangles = 4'000'000;
-constexpr double kHalfGapPixels = 4;                                 ///< half the width of the ground between two views
-constexpr std::size_t kFirstPiece = 20'000, kSmallestPiece = 1'000;  ///< elements
+constexpr double kHalfGapPixels = 4;  ///< half the width of the ground between two views
+constexpr std::size_t kFirstPiece = 20'000, kSmallestPiece = 1'000, kLargestPiece = 1'000'000'000;  ///< elements
 
 /// The input from which the scene in the eyes' images was drawn.
 struct DrawnScene {
@@ -49,6 +50,12 @@ bool same_composition(const Picture& a, const Picture& b) {
     return std::tie(p.profile, p.between_eyes_mm, p.toward_right, p.eye_separation_mm, p.depth_share, p.mask_mm, p.panel);
   };
   return facts(a) == facts(b);
+}
+
+/// How many elements are drawn before the clock is looked at again, after so many took that time.
+std::size_t next_count(std::size_t count, std::int64_t took_ns, std::int64_t budget_ns) {
+  const double share = std::clamp(static_cast<double>(budget_ns) / static_cast<double>(took_ns), 0.5, 2.0);
+  return std::clamp(static_cast<std::size_t>(static_cast<double>(count) * share), kSmallestPiece, kLargestPiece);
 }
 
 EyeView eye_view(const Picture& picture, const ComposedImage& image, int width, int height) {
@@ -113,6 +120,14 @@ struct Renderer::Impl {
   ItemImage items;
   Eigen::Matrix4d items_clip = Eigen::Matrix4d::Zero();
   std::uint64_t items_version = 0;
+  /// An item image that is drawn in pieces.
+  struct ItemPieces {
+    Eigen::Matrix4d clip;
+    std::uint64_t version = 0;
+    std::size_t done = 0;  ///< elements
+  };
+  std::optional<ItemPieces> item_pieces;
+  std::size_t items_at_once = kFirstPiece;
   Figures figures;
 
   Impl(const RendererOptions& wanted, Shaders linked) : options(wanted), shaders(std::move(linked)), scene(shaders), flat(shaders) {}
@@ -127,6 +142,8 @@ struct Renderer::Impl {
   void compose_for(const Picture& picture, int width, int height);
   bool make_item_buffer(int width, int height);
   void read_items(int width, int height);
+  bool have_items(const stereo::Aim& aim) const;
+  bool draw_items(const stereo::Aim& aim, std::size_t count);
   const ItemImage& items_for(const stereo::Aim& aim);
 };
 
@@ -157,6 +174,7 @@ Result<void> Renderer::set_model(std::shared_ptr<const ModelSource> model) {
 
 Result<void> Renderer::set_levels(std::shared_ptr<const MadeLevels> made) {
   impl_->pieces.reset();  // shells are drawn in another order
+  impl_->item_pieces.reset();
   return impl_->layer.set_levels(std::move(made));
 }
 
@@ -183,6 +201,7 @@ Result<void> Renderer::set_field(Pane pane, std::span<const float> values, bool 
 Result<void> Renderer::set_part_paints(std::span<const PartPaint> paints) {
   ++impl_->scene_version;
   impl_->items_version = 0;
+  impl_->item_pieces.reset();
   return impl_->paint.set(paints);
 }
 
@@ -337,7 +356,6 @@ Result<bool> Renderer::draw_piece(const Picture& picture, int width, int height,
   return true;
 }
 
-/// How many elements are drawn before the clock is looked at again follows from how long the last ones took.
 Result<bool> Renderer::Impl::draw_next(Pieces& next, Clock& clock, std::int64_t budget_ns) {
   const std::int64_t start = clock.now_ns();
   const Picture& picture = next.scene.picture;
@@ -358,8 +376,7 @@ Result<bool> Renderer::Impl::draw_next(Pieces& next, Clock& clock, std::int64_t 
     glFinish();
     now = clock.now_ns();
     took = std::max<std::int64_t>(now - before, 1);
-    const double share = std::clamp(static_cast<double>(budget_ns) / static_cast<double>(took), 0.5, 2.0);
-    at_once = std::max(kSmallestPiece, static_cast<std::size_t>(static_cast<double>(at_once) * share));
+    at_once = next_count(at_once, took, budget_ns);
     if (next.image == next.scene.images.size()) return true;
   } while (now - start + took <= budget_ns);
   return false;
@@ -429,21 +446,58 @@ void Renderer::Impl::read_items(int width, int height) {
   for (std::size_t i = 0; i < pixels; ++i) items.items[i] = all[i][0];
 }
 
-const ItemImage& Renderer::Impl::items_for(const stereo::Aim& aim) {
+bool Renderer::Impl::have_items(const stereo::Aim& aim) const {
+  return items.width == aim.width && items.height == aim.height && items_version == layer.shape_version() &&
+         items_clip == aim.clip_from_deck() && !items.items.empty();
+}
+
+/// Draws the next `count` elements, and reads the image if it is whole. Returns whether it is, or can't be drawn.
+bool Renderer::Impl::draw_items(const stereo::Aim& aim, std::size_t count) {
+  if (have_items(aim)) return true;
   const Eigen::Matrix4d clip = aim.clip_from_deck();
+  if (items.width != aim.width || items.height != aim.height) item_pieces.reset();
   if (!make_item_buffer(aim.width, aim.height)) {
     items = {};
-    return items;
+    item_pieces.reset();
+    return true;
   }
-  if (items_version == layer.shape_version() && items_clip == clip && !items.items.empty()) return items;
+  if (!item_pieces || item_pieces->version != layer.shape_version() || item_pieces->clip != clip)
+    item_pieces = ItemPieces{clip, layer.shape_version()};
+  items_version = 0;  // what was read before is drawn over
+  const std::size_t end = item_pieces->done + std::min(count, std::numeric_limits<std::size_t>::max() - item_pieces->done);
+  DrawSpan span(item_pieces->done, end);
   glBindFramebuffer(GL_FRAMEBUFFER, item_framebuffer.get());
   glViewport(0, 0, aim.width, aim.height);
-  scene.draw_items(layer, paint, clip);
+  scene.draw_items(layer, paint, clip, span);
+  item_pieces->done = end;
+  if (span.leaves_some()) return false;
   read_items(aim.width, aim.height);
   items_clip = clip;
-  items_version = layer.shape_version();
+  items_version = item_pieces->version;
+  item_pieces.reset();
   ++figures.item_buffers_drawn;
+  return true;
+}
+
+const ItemImage& Renderer::Impl::items_for(const stereo::Aim& aim) {
+  draw_items(aim, std::numeric_limits<std::size_t>::max());
   return items;
+}
+
+bool Renderer::draw_items_piece(const stereo::Aim& aim, Clock& clock, std::int64_t budget_ns) {
+  Impl& impl = *impl_;
+  if (impl.layer.empty()) return true;
+  const std::int64_t start = clock.now_ns();
+  std::int64_t now = start, took = 0;
+  do {
+    const std::int64_t before = now;
+    if (impl.draw_items(aim, impl.items_at_once)) return true;
+    glFinish();
+    now = clock.now_ns();
+    took = std::max<std::int64_t>(now - before, 1);
+    impl.items_at_once = next_count(impl.items_at_once, took, budget_ns);
+  } while (now - start + took <= budget_ns);
+  return false;
 }
 
 std::optional<mesh::ShellIndex> Renderer::shell_at(const stereo::Aim& aim, const Eigen::Vector2d& pixel) {

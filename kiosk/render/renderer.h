@@ -98,6 +98,9 @@ class Renderer {
   /// the last piece, or if `draw` has drawn another scene. Errors: as of `draw`.
   Result<bool> draw_piece(const Picture& picture, int width, int height, Clock& clock, std::int64_t budget_ns);
 
+  /// Draws a piece of the item image, from which things are picked, in about `budget_ns`. Returns whether it is whole: then picking is
+  /// fast.
+  bool draw_items_piece(const stereo::Aim& aim, Clock& clock, std::int64_t budget_ns);
   /// The shell at a pixel of the picture of `aim`. The item image is drawn again only if the aim, the model or the visible parts changed. A
   /// preview isn't in it: its pixels give the model's shells.
   std::optional<mesh::ShellIndex> shell_at(const stereo::Aim& aim, const Eigen::Vector2d& pixel);

@@ -200,16 +200,19 @@ void ScenePass::draw_shells(const Picture& picture, const ViewContent& content, 
   draw_opaque_and_transparent(shaders_.coarse, content, [&] { draws.draw_chosen_coarse(); });
 }
 
-void ScenePass::draw_items(const ModelLayer& model, const PaintTexture& paint, const Eigen::Matrix4d& clip_from_deck) const {
+void ScenePass::draw_items(const ModelLayer& model, const PaintTexture& paint, const Eigen::Matrix4d& clip_from_deck,
+                           DrawSpan& span) const {
   const GLuint ground[4] = {0, 0, 0, 0};
   glDisable(GL_SCISSOR_TEST);
   glDisable(GL_BLEND);
   glDisable(GL_CULL_FACE);
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   glDepthMask(GL_TRUE);
-  glClearBufferuiv(GL_COLOR, 0, ground);
-  glClearDepthf(1);
-  glClear(GL_DEPTH_BUFFER_BIT);
+  if (span.takes()) {
+    glClearBufferuiv(GL_COLOR, 0, ground);
+    glClearDepthf(1);
+    glClear(GL_DEPTH_BUFFER_BIT);
+  }
   if (model.empty()) return;
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LEQUAL);
@@ -226,8 +229,7 @@ void ScenePass::draw_items(const ModelLayer& model, const PaintTexture& paint, c
   paint.use(shaders_.items, false);
   shaders_.items.set("cut_plane", cut_plane(model));
   const CutOff cut(model);
-  DrawSpan all;
-  model.shell_draws().draw_all(clip_from_model, all);
+  model.shell_draws().draw_all(clip_from_model, span);
   glDisable(GL_DEPTH_TEST);
 }
 

@@ -40,8 +40,8 @@ class ScenePass {
   void begin_pane(const EyeView& eye, double from, double to, DrawSpan& span) const;
   /// Draws what lies in the span. A scene that is drawn in pieces must be at rest.
   void draw(const Picture& picture, const ViewContent& content, const EyeView& eye, const DrawCaps& caps, DrawSpan& span) const;
-  /// Draws shell index + 1 into a bound R32UI framebuffer; 0: no shell. Transparent parts aren't drawn.
-  void draw_items(const ModelLayer& model, const PaintTexture& paint, const Eigen::Matrix4d& clip_from_deck) const;
+  /// Draws shell index + 1 into a bound R32UI framebuffer; 0: no shell. Transparent parts aren't drawn. Clears it if the span begins there.
+  void draw_items(const ModelLayer& model, const PaintTexture& paint, const Eigen::Matrix4d& clip_from_deck, DrawSpan& span) const;
 
  private:
   struct LineStyle {

@@ -16,9 +16,15 @@ struct Viewpoint {
   double nearest = 0;               ///< what is nearer counts as at this distance
 };
 
-/// Appends the indices of the clusters, ascending: together they stand for each shell exactly once, and none is farther from its shells
-/// than `max_pixels` as seen from `from`. `held`: groups that aren't chosen (groups_over); empty: none.
-void choose(const Levels& levels, const std::vector<std::uint8_t>& held, const Viewpoint& from, double max_pixels,
+/// What coarse triangles may stand for.
+struct Limits {
+  double error_pixels = 1;                                       ///< they are no farther from their shells
+  double side_pixels = std::numeric_limits<double>::infinity();  ///< of the shells: larger ones are seen as they are
+};
+
+/// Appends the indices of the clusters, ascending: together they stand for each shell exactly once, within the limits as seen from `from`.
+/// `moved`: by how much nodes under a group have moved (added_errors); empty: not at all.
+void choose(const Levels& levels, std::span<const float> moved, const Viewpoint& from, const Limits& limits,
             std::vector<std::uint32_t>& clusters);
 
 /// How many shells, and triangles of coarse clusters, they have; a quad counts as two triangles.

@@ -199,6 +199,46 @@ BENCHMARK(path)
     ->MeasureProcessCPUTime()
     ->UseRealTime();
 
+/// From a snapshot in which an edit has moved 10,000 nodes of a million shells with levels of detail to the moving picture that shows them.
+/// `taking_ms`: wall time until the renderer has the snapshot; `picture_ms`: of the picture for both eyes. Argument: 0: neighbours, else
+/// every so many nodes.
+void nodes_moved(benchmark::State& state) {
+  Stage stage(0, "side-by-side", 1);
+  static const auto levels = std::make_shared<const render::MadeLevels>(render::make_levels(*million(0)).value());
+  const std::shared_ptr<test::TestSource> source = million(0);
+  (void)stage.renderer->set_levels(levels);
+  const std::size_t step = std::max<std::size_t>(static_cast<std::size_t>(state.range(0)), 1);
+  MonotonicClock clock;
+  double taking = 0, drawing = 0;
+  std::size_t turn = 0;
+  for (auto _ : state) {
+    state.PauseTiming();
+    std::vector<std::uint8_t> touched(source->positions.size() / mesh::kChunkSize + 1);
+    const double up = ++turn % 2 == 0 ? -3 : 3;
+    for (std::size_t k = 0; k < 10'000; ++k) {
+      const std::size_t node = (step == 1 ? 400'000 : 0) + k * step;
+      source->positions[node].z() += up;
+      touched[node / mesh::kChunkSize] = 1;
+    }
+    for (std::size_t c = 0; c < touched.size(); ++c)
+      if (touched[c] != 0) source->touch(ipc::SnapshotArray::positions, c);
+    const auto next = std::make_shared<test::TestSource>(*source);
+    state.ResumeTiming();
+    const std::int64_t start = clock.now_ns();
+    benchmark::DoNotOptimize(stage.renderer->set_model(next));
+    const std::int64_t taken = clock.now_ns();
+    benchmark::DoNotOptimize(stage.renderer->draw(stage.picture, stage.target.framebuffer(), kWidth, kHeight));
+    glFinish();
+    taking += static_cast<double>(taken - start) * 1e-6;
+    drawing += static_cast<double>(clock.now_ns() - taken) * 1e-6;
+  }
+  state.counters["taking_ms"] = benchmark::Counter(taking, benchmark::Counter::kAvgIterations);
+  state.counters["picture_ms"] = benchmark::Counter(drawing, benchmark::Counter::kAvgIterations);
+  state.counters["triangles"] = static_cast<double>(stage.renderer->figures().moving_triangles);
+  state.SetLabel(reinterpret_cast<const char*>(glGetString(GL_RENDERER)));
+}
+BENCHMARK(nodes_moved)->ArgName("step")->Arg(0)->Arg(100)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+
 /// From a snapshot in which an edit has changed the quality of 10,000 shells to the picture with their glyphs, with the view unchanged.
 /// `taking_s` is the processor time until the renderer has the snapshot, the rest is drawing. Arguments: percentage of shells that warn;
 /// whether the edit made and removed shells (1), or moved nodes (0).

@@ -208,15 +208,17 @@ class RenderPieces : public RenderLevels {
     picture.two_views.emplace();
     return picture;
   }
-  /// Draws the scene at rest with a clock that moves on by 10 ms at each look. Returns the number of pieces.
-  std::size_t draw_in_pieces(const Picture& picture, std::int64_t budget_ns, std::size_t max = 1000) {
-    class Ticking final : public Clock {
-     public:
-      std::int64_t now_ns() override { return now_ += 10'000'000; }
+  /// Moves on by 10 ms at each look.
+  class TickingClock final : public Clock {
+   public:
+    std::int64_t now_ns() override { return now_ += 10'000'000; }
 
-     private:
-      std::int64_t now_ = 0;
-    } clock;
+   private:
+    std::int64_t now_ = 0;
+  };
+  /// Draws the scene at rest. Returns the number of pieces.
+  std::size_t draw_in_pieces(const Picture& picture, std::int64_t budget_ns, std::size_t max = 1000) {
+    TickingClock clock;
     for (std::size_t pieces = 1; pieces <= max; ++pieces) {
       const Result<bool> whole = renderer_->draw_piece(picture, kLevelsWidth, kLevelsHeight, clock, budget_ns);
       EXPECT_TRUE(whole) << whole.error().text();
@@ -298,6 +300,47 @@ TEST_F(RenderPieces, leave_what_is_shown_until_they_are_whole) {
   EXPECT_GT(draw_in_pieces(turned, 1'000'000), 20u);
   turned.waiting = true;
   EXPECT_NE(draw(turned, kLevelsWidth, kLevelsHeight).rgb, coarse.rgb) << "what is whole is shown";
+}
+
+TEST_F(RenderPieces, pick_the_same_as_one_go) {
+  test::TestSource source = full_source();
+  const Picture picture = full_picture(source, "mono");
+  const stereo::Aim aim = aim_of(picture, kLevelsWidth, kLevelsHeight);
+  const auto picked = [&] {
+    std::vector<std::optional<mesh::ShellIndex>> shells;
+    for (int y = 10; y < kLevelsHeight; y += 13)
+      for (int x = 10; x < kLevelsWidth; x += 19) shells.push_back(renderer_->shell_at(aim, {x, y}));
+    return shells;
+  };
+  const auto expected = picked();
+  full_picture(source, "mono");
+  TickingClock clock;
+  Picture turned = picture;
+  for (int k = 1; k < 6; ++k) {  // pieces become small
+    turned.view = stereo::orbit(picture.view, 0.1 * k, 0);
+    EXPECT_FALSE(renderer_->draw_items_piece(aim_of(turned, kLevelsWidth, kLevelsHeight), clock, 1'000'000));
+  }
+  std::size_t pieces = 1;
+  for (; !renderer_->draw_items_piece(aim, clock, 1'000'000); ++pieces)
+    if (pieces % 3 == 0) draw(picture, kLevelsWidth, kLevelsHeight);
+  EXPECT_GT(pieces, 10u);
+  EXPECT_EQ(renderer_->figures().item_buffers_drawn, 1u);
+  EXPECT_EQ(picked(), expected);
+  EXPECT_EQ(renderer_->figures().item_buffers_drawn, 1u) << "what was drawn ahead is used";
+  // A pick in between draws the rest.
+  full_picture(source, "mono");
+  EXPECT_FALSE(renderer_->draw_items_piece(aim, clock, 1'000'000));
+  EXPECT_EQ(picked(), expected);
+  // Pieces of another aim, paint or order of shells aren't gone on with.
+  full_picture(source, "mono");
+  EXPECT_FALSE(renderer_->draw_items_piece(aim_of(turned, kLevelsWidth, kLevelsHeight), clock, 1'000'000));
+  EXPECT_FALSE(renderer_->draw_items_piece(aim, clock, 1'000'000));
+  set_levels(source);
+  EXPECT_EQ(picked(), expected);
+  EXPECT_TRUE(renderer_->set_part_paints({}));
+  EXPECT_FALSE(renderer_->draw_items_piece(aim, clock, 1'000'000));
+  EXPECT_TRUE(renderer_->set_part_paints(std::vector<PartPaint>{{}, {.transparent = true}}));
+  EXPECT_EQ(picked(), expected);
 }
 
 TEST(LevelsWorker, makes_levels_once_the_model_rests_and_stops_for_another) {
