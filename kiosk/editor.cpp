@@ -110,7 +110,7 @@ Result<void> Editor::make_levels() {
   auto made = levels_.turn(context_.clock.now_ns(), renderer.shared_model(), !renderer.levels_are_current());
   if (!made) return {};
   context_.trace.line("levels " + std::to_string(made->levels.clusters.size()) + " clusters");
-  return renderer.set_levels(std::move(made));
+  return renderer.set_levels(std::move(*made));
 }
 
 bool Editor::prepare_picking(std::int64_t budget_ns) {

@@ -172,7 +172,7 @@ Result<void> Renderer::set_model(std::shared_ptr<const ModelSource> model) {
   return done;
 }
 
-Result<void> Renderer::set_levels(std::shared_ptr<const MadeLevels> made) {
+Result<void> Renderer::set_levels(MadeLevels made) {
   impl_->pieces.reset();  // shells are drawn in another order
   impl_->item_pieces.reset();
   return impl_->layer.set_levels(std::move(made));

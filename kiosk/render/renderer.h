@@ -46,7 +46,7 @@ class Renderer {
   Result<void> set_model(std::shared_ptr<const ModelSource> model);
   /// Takes over levels of detail: moving pictures show coarse triangles for shells that are small in them. Ignored unless they were made of
   /// the shells that are shown; dropped when the shells are others. Errors: no graphics memory.
-  Result<void> set_levels(std::shared_ptr<const MadeLevels> made);
+  Result<void> set_levels(MadeLevels made);
   /// Whether moving pictures have levels of detail, of the places where the nodes are now.
   bool levels_are_current() const;
   const ModelSource* model() const;

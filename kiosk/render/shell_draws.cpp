@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <type_traits>
 
 #include "base/parallel_for.h"
 
@@ -115,15 +116,14 @@ void ShellDraws::drop_levels() {
   ordered_ = 0;
 }
 
-Result<void> ShellDraws::set_levels(std::shared_ptr<const MadeLevels> made, const ModelTable& table) {
-  if (!made || made->document != table.source().document_key() || made->shell_versions != shell_versions_of(table.source())) return {};
-  const std::vector<mesh::lod::CoarseTriangle>& triangles = made->levels.triangles;
+Result<void> ShellDraws::set_levels(MadeLevels made, const ModelTable& table) {
+  if (made.document != table.source().document_key() || made.shell_versions != shell_versions_of(table.source())) return {};
+  const std::vector<mesh::lod::CoarseTriangle>& triangles = made.levels.triangles;
   if (const auto reserved = coarse_.reserve(std::max<std::size_t>(triangles.size(), 1), "coarse triangles"); !reserved)
     return fail(reserved.error());
-  std::vector<std::array<std::uint32_t, 4>> rows;
-  rows.reserve(triangles.size());
-  for (const mesh::lod::CoarseTriangle& t : triangles) rows.push_back({t.node[0].value, t.node[1].value, t.node[2].value, t.shell.value});
-  coarse_.upload(std::as_bytes(std::span(rows)));
+  static_assert(sizeof(mesh::lod::CoarseTriangle) == 4 * sizeof(std::uint32_t) && std::is_standard_layout_v<mesh::lod::CoarseTriangle>);
+  coarse_.upload(std::as_bytes(std::span(triangles)));  // three nodes and the shell
+  made.levels.triangles = {};
   made_ = std::move(made);
   if (Result<void> done = upload_order(made_->levels.shells); !done) return done;
   runs_.clear();

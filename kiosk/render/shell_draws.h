@@ -2,7 +2,7 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
+#include <optional>
 #include <vector>
 
 #include "kiosk/render/draw_span.h"
@@ -30,9 +30,9 @@ class ShellDraws {
 
   /// Follows the model. Levels of other shells are dropped. Errors: no graphics memory.
   Result<void> update(const ModelTable& table, const ModelTextures& textures, const ModelChanges& changes);
-  /// Takes levels over; ignored if they were made of other shells. Null: none. Errors: no graphics memory.
-  Result<void> set_levels(std::shared_ptr<const MadeLevels> made, const ModelTable& table);
-  bool has_levels() const { return made_ != nullptr; }
+  /// Takes levels over; ignored if they were made of other shells. Errors: no graphics memory.
+  Result<void> set_levels(MadeLevels made, const ModelTable& table);
+  bool has_levels() const { return made_.has_value(); }
   /// Whether nodes have moved since the levels were made.
   bool is_out_of_date() const { return !moved_by_.empty(); }
 
@@ -68,9 +68,9 @@ class ShellDraws {
   std::size_t shells_ = 0;
   gl::VertexArray all_array_, shell_array_, coarse_array_;
   gl::Buffer all_indices_, shell_indices_, coarse_indices_;
-  std::size_t ordered_ = 0;  ///< shells in all_indices_
-  std::vector<Run> runs_;    ///< with levels: their clusters of shells
-  std::shared_ptr<const MadeLevels> made_;
+  std::size_t ordered_ = 0;         ///< shells in all_indices_
+  std::vector<Run> runs_;           ///< with levels: their clusters of shells
+  std::optional<MadeLevels> made_;  ///< without triangles: they are in coarse_
   RowTexture coarse_{kFourIndices};
   std::vector<float> moved_by_;         ///< by node, since the levels were made; empty: none has moved
   std::vector<float> cluster_moved_;    ///< by cluster of shells: the longest way of one of their nodes

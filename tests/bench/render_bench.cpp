@@ -86,7 +86,7 @@ BENCHMARK(turning)
 /// The same with levels of detail, for both eyes at 1920 x 1080. Argument: zoom.
 void turning_with_levels(benchmark::State& state) {
   Stage stage(0, "side-by-side", static_cast<double>(state.range(0)));
-  static const auto levels = std::make_shared<const render::MadeLevels>(render::make_levels(*million(0)).value());
+  static const auto levels = render::make_levels(*million(0)).value();
   (void)stage.renderer->set_levels(levels);
   for (auto _ : state) {
     stage.picture.view = stereo::orbit(stage.picture.view, 0.001, 0);
@@ -110,7 +110,7 @@ BENCHMARK(turning_with_levels)
 /// milliseconds. `longest_ms` is the longest wall time of a piece, and so between two looks at the input.
 void at_rest(benchmark::State& state) {
   Stage stage(0, "side-by-side", 1);
-  static const auto levels = std::make_shared<const render::MadeLevels>(render::make_levels(*million(0)).value());
+  static const auto levels = render::make_levels(*million(0)).value();
   (void)stage.renderer->set_levels(levels);
   stage.picture.moving = false;
   MonotonicClock clock;
@@ -149,8 +149,7 @@ void path(benchmark::State& state) {
   const render::Offscreen target = std::move(*render::Offscreen::create(kPathWidth, kPathHeight));
   const auto source = std::make_shared<test::TestSource>(sheet_of(static_cast<std::uint32_t>(state.range(0))));
   (void)renderer->set_model(source);
-  if (source->shell_nodes.size() > kiosk::LevelsWorker::kFewestShells)
-    (void)renderer->set_levels(std::make_shared<const render::MadeLevels>(render::make_levels(*source).value()));
+  if (source->shell_nodes.size() > kiosk::LevelsWorker::kFewestShells) (void)renderer->set_levels(render::make_levels(*source).value());
   render::Picture picture;
   picture.profile = *stereo::find_profile("side-by-side");
   picture.view.rotation = *stereo::named_rotation("iso");
@@ -204,7 +203,7 @@ BENCHMARK(path)
 /// every so many nodes.
 void nodes_moved(benchmark::State& state) {
   Stage stage(0, "side-by-side", 1);
-  static const auto levels = std::make_shared<const render::MadeLevels>(render::make_levels(*million(0)).value());
+  static const auto levels = render::make_levels(*million(0)).value();
   const std::shared_ptr<test::TestSource> source = million(0);
   (void)stage.renderer->set_levels(levels);
   const std::size_t step = std::max<std::size_t>(static_cast<std::size_t>(state.range(0)), 1);

@@ -29,10 +29,7 @@ class RenderLevels : public RenderTest {
     picture.outlines = picture.element_edges = false;
     return picture;
   }
-  void set_levels(const test::TestSource& source) {
-    const auto made = std::make_shared<const MadeLevels>(make_levels(source).value());
-    ASSERT_TRUE(renderer_->set_levels(made));
-  }
+  void set_levels(const test::TestSource& source) { ASSERT_TRUE(renderer_->set_levels(make_levels(source).value())); }
   /// The renderer keeps a scene that is at rest, so the next picture is drawn anew from another side and back.
   Image moving(Picture picture) {
     const stereo::View view = picture.view;
@@ -347,12 +344,12 @@ TEST(LevelsWorker, makes_levels_once_the_model_rests_and_stops_for_another) {
   const auto large = std::make_shared<test::TestSource>(waves(200)), other = std::make_shared<test::TestSource>(waves(200));
   other->key = 2;
   LevelsWorker worker;
-  EXPECT_EQ(worker.turn(0, large, true), nullptr);
+  EXPECT_FALSE(worker.turn(0, large, true));
   EXPECT_EQ(worker.next_ns(0), LevelsWorker::kRestNs);
-  EXPECT_EQ(worker.turn(LevelsWorker::kRestNs - 1, large, true), nullptr);
-  EXPECT_EQ(worker.turn(LevelsWorker::kRestNs, large, true), nullptr) << "begins";
-  EXPECT_EQ(worker.turn(LevelsWorker::kRestNs + 1, other, true), nullptr) << "another document: stops";
-  std::shared_ptr<const MadeLevels> made;
+  EXPECT_FALSE(worker.turn(LevelsWorker::kRestNs - 1, large, true));
+  EXPECT_FALSE(worker.turn(LevelsWorker::kRestNs, large, true)) << "begins";
+  EXPECT_FALSE(worker.turn(LevelsWorker::kRestNs + 1, other, true)) << "another document: stops";
+  std::optional<MadeLevels> made;
   for (std::int64_t now = 3 * LevelsWorker::kRestNs; !made; now += 1'000'000) {
     made = worker.turn(now, other, true);
     std::this_thread::yield();
@@ -360,7 +357,7 @@ TEST(LevelsWorker, makes_levels_once_the_model_rests_and_stops_for_another) {
   EXPECT_EQ(made->document, 2u);
   EXPECT_EQ(made->levels.shells.size(), other->shell_nodes.size());
   const auto small = std::make_shared<test::TestSource>(waves(20));
-  EXPECT_EQ(worker.turn(1'000'000'000'000, small, true), nullptr);
+  EXPECT_FALSE(worker.turn(1'000'000'000'000, small, true));
   EXPECT_EQ(worker.next_ns(1'000'000'000'000), std::nullopt);
 }
 
