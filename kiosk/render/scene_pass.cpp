@@ -190,9 +190,9 @@ void ScenePass::draw_shells(const Picture& picture, const ViewContent& content, 
   if (!picture.moving || !draws.has_levels())
     return draw_opaque_and_transparent(shaders_.shells, content, [&] { draws.draw_all(clip_from_model, frame.span); });
   // The same for both eyes: from between them.
-  const double pixels = picture.between_eyes_mm.z() / frame.eye.mm_per_pixel;
-  draws.choose({stereo::to_deck(picture.view, picture.between_eyes_mm), pixels, kNearestMm / picture.view.mm_per_unit}, clip_from_model,
-               moving_triangles);
+  const double pixels = picture.view.mm_per_unit * picture.between_eyes_mm.z() / frame.eye.mm_per_pixel;
+  const Vec3 away = -stereo::screen_from_deck(picture.view).row(2).head<3>().transpose();  // mm in depth, which is compressed
+  draws.choose({stereo::to_deck(picture.view, picture.between_eyes_mm), pixels, kNearestMm, away}, clip_from_model, moving_triangles);
   draw_opaque_and_transparent(shaders_.shells, content, [&] { draws.draw_chosen_shells(); });
   set_shell_uniforms(shaders_.coarse, picture, content, frame);
   draws.coarse().bind(unit::kCoarse);

@@ -8,7 +8,9 @@ namespace {
 
 /// A node that was removed and the triangle in its place may have moved apart, each by `moved`.
 bool is_fine(const Group& group, double moved, const Viewpoint& from, const Limits& limits) {
-  const double distance = std::max((group.sphere.centre - from.eye).norm() - group.sphere.radius - moved, from.nearest);
+  const Vec3 way = group.sphere.centre - from.eye;
+  const double scale = from.away.norm(), middle = scale > 0 ? way.dot(from.away) : way.norm();
+  const double distance = std::max(middle - (scale > 0 ? scale : 1) * (group.sphere.radius + moved), from.nearest);
   return (group.error + 2 * moved) * from.pixels_at_distance_1 <= limits.error_pixels * distance &&
          group.side * from.pixels_at_distance_1 <= limits.side_pixels * distance;
 }

@@ -14,6 +14,9 @@ struct Viewpoint {
   Vec3 eye = Vec3::Zero();          ///< model's coordinates
   double pixels_at_distance_1 = 0;  ///< size in pixels of a length of 1 at the distance 1
   double nearest = 0;               ///< what is nearer counts as at this distance
+  /// What the distance grows by along each axis, if it is counted along the view, in any unit, and 0 at the eye; zero: it is the length of
+  /// the way from the eye. Drawing with compressed depth needs the first: there things are nearer than their place says.
+  Vec3 away = Vec3::Zero();
 };
 
 /// What coarse triangles may stand for.

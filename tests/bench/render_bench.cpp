@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <ctime>
 #include <fstream>
 #include <memory>
@@ -18,6 +20,7 @@
 #include "kiosk/levels_worker.h"
 #include "kiosk/render/make_levels.h"
 #include "kiosk/render/offscreen.h"
+#include "kiosk/render/picture_file.h"
 #include "kiosk/render/renderer.h"
 #include "tests/kiosk/test_source.h"
 
@@ -105,6 +108,50 @@ BENCHMARK(turning_with_levels)
     ->Unit(benchmark::kMillisecond)
     ->MeasureProcessCPUTime()
     ->UseRealTime();
+
+/// A film of the camera on its way through the levels: for each step of turning and zooming the picture at rest, the moving one, and how
+/// far they differ (mid-grey: not at all, white: by 64 of 255). Written as PNG into the folder that PRISMESH_FILM names. Counters: the
+/// largest shares of pixels whose brightness differs by more than 8 and 24 of 255.
+void film(benchmark::State& state) {
+  const char* const folder = std::getenv("PRISMESH_FILM");
+  Stage stage(0, "mono", 1);
+  (void)stage.renderer->set_levels(render::make_levels(*million(0)).value());
+  const stereo::View begin = stage.picture.view;
+  double more_than_8 = 0, more_than_24 = 0;
+  for (auto _ : state)
+    for (int k = 0; k < 16; ++k) {
+      stage.picture.view = stereo::zoom(stereo::orbit(begin, 0.11 * k, 0.02 * k), std::pow(1.35, k), {0, 0});
+      std::vector<render::Image> images;
+      for (const bool moving : {true, false}) {  // the other way round the picture at rest would be shown again
+        stage.picture.moving = moving;
+        (void)stage.renderer->draw(stage.picture, stage.target.framebuffer(), kWidth, kHeight);
+        images.push_back(stage.target.read());
+      }
+      images.push_back(images[0]);
+      std::size_t over_8 = 0, over_24 = 0;
+      for (std::size_t i = 0; i < images[0].rgb.size(); i += 3) {
+        int apart = 0;
+        for (std::size_t c = 0; c < 3; ++c) apart += images[0].rgb[i + c] - images[1].rgb[i + c];
+        apart /= 3;
+        over_8 += std::abs(apart) > 8 ? 1 : 0;
+        over_24 += std::abs(apart) > 24 ? 1 : 0;
+        for (std::size_t c = 0; c < 3; ++c) images[2].rgb[i + c] = static_cast<std::uint8_t>(std::clamp(128 + 2 * apart, 0, 255));
+      }
+      const double pixels = static_cast<double>(images[0].rgb.size()) / 3;
+      more_than_8 = std::max(more_than_8, static_cast<double>(over_8) / pixels);
+      more_than_24 = std::max(more_than_24, static_cast<double>(over_24) / pixels);
+      if (folder == nullptr) continue;
+      std::printf("%02d: %.1f%% of the pixels by more than 8, %.1f%% by more than 24; %zu triangles, off by %.1f\n", k,
+                  100 * static_cast<double>(over_8) / pixels, 100 * static_cast<double>(over_24) / pixels,
+                  stage.renderer->figures().moving_triangles, stage.renderer->figures().moving_pixels);
+      const char* const names[] = {"moving", "rest", "apart"};
+      for (std::size_t n = 0; n < 3; ++n)
+        (void)render::write_png(std::string(folder) + "/" + (k < 10 ? "0" : "") + std::to_string(k) + "_" + names[n] + ".png", images[n]);
+    }
+  state.counters["over_8"] = more_than_8;
+  state.counters["over_24"] = more_than_24;
+}
+BENCHMARK(film)->Iterations(1)->Unit(benchmark::kMillisecond);
 
 /// A picture at rest of the million for both eyes, after one from another side. Argument: 0 in one go, else in pieces of so many
 /// milliseconds. `longest_ms` is the longest wall time of a piece, and so between two looks at the input.

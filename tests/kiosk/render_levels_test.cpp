@@ -130,6 +130,44 @@ TEST_F(RenderLevels, show_moved_nodes_where_they_are) {
     for (int dx = -1; dx <= 1; ++dx) EXPECT_NEAR(brightness(coarse, x + dx, y + dy), brightness(whole, x + dx, y + dy), 6);
 }
 
+/// Zoomed in, depth is compressed much: places in the deck say little about how large things are seen.
+TEST_F(RenderLevels, show_element_edges_in_motion_where_they_are_seen_at_rest) {
+  const test::TestSource source = waves();
+  Picture picture = of(source);
+  set_levels(source);
+  picture.element_edges = true;
+  picture.view = stereo::zoom(picture.view, 12, {0, 0});
+  const Image coarse = moving(picture);
+  const Image whole = draw(picture, kLevelsWidth, kLevelsHeight);
+  picture.element_edges = false;
+  const Image plain = draw(picture, kLevelsWidth, kLevelsHeight);
+  std::size_t edges = 0, differ = 0;
+  for (int y = 0; y < kLevelsHeight; ++y)
+    for (int x = 0; x < kLevelsWidth; ++x) {
+      edges += std::abs(brightness(plain, x, y) - brightness(whole, x, y)) > 16 ? 1 : 0;
+      differ += std::abs(brightness(coarse, x, y) - brightness(whole, x, y)) > 16 ? 1 : 0;
+    }
+  EXPECT_GT(edges, 2000u);
+  EXPECT_LT(differ, 300u);
+}
+
+TEST_F(RenderLevels, see_small_moves_far_from_zero) {
+  test::TestSource source = waves();
+  for (mesh::Vec3& at : source.positions) at += mesh::Vec3::Constant(1e7);
+  of(source);
+  set_levels(source);
+  EXPECT_TRUE(renderer_->levels_are_current());
+  source.positions[77].z() += 2e-3;
+  source.touch(ipc::SnapshotArray::positions, 0);
+  const Picture picture = of(source);
+  EXPECT_FALSE(renderer_->levels_are_current());
+  const Image whole = draw(picture, kLevelsWidth, kLevelsHeight), coarse = moving(picture);
+  std::size_t differ = 0;
+  for (int y = 0; y < kLevelsHeight; ++y)
+    for (int x = 0; x < kLevelsWidth; ++x) differ += std::abs(brightness(coarse, x, y) - brightness(whole, x, y)) > 40 ? 1 : 0;
+  EXPECT_LT(differ, 600u);
+}
+
 TEST_F(RenderLevels, of_other_shells_arent_used) {
   test::TestSource source = waves();
   of(source);

@@ -295,9 +295,9 @@ TEST(Levels, stay_right_after_edits_in_random_order) {
   const Levels levels = build_levels(model).value();
   std::mt19937 random(11);
   std::uniform_real_distribution<double> place(-1, 1);
-  for (int edit = 0; edit < 6; ++edit) {
+  for (int edit = 0; edit < 8; ++edit) {
     const Vec3 centre = model.position(NodeIndex(random() % model.node_count()));
-    const Vec3 by = std::pow(10, 1.5 * place(random)) * Vec3(place(random), place(random), place(random));
+    const Vec3 by = std::pow(10, 1 + place(random)) * Vec3(place(random), place(random), place(random));
     for (std::size_t n = 0; n < model.node_count(); ++n)
       if ((model.position(NodeIndex(n)) - centre).norm() < 60) model.positions.set(n, model.position(NodeIndex(n)) + by);
     std::vector<float> by_cluster(levels.shell_clusters);
@@ -328,6 +328,8 @@ TEST(Levels, stay_right_after_edits_in_random_order) {
                                                         model.position(NodeIndex(n)))
                                .distance2);
         ASSERT_LE(std::sqrt(near2), 1.2 * error + 1e-9) << "edit " << edit << ", " << triangles.size() << " triangles";
+        const double distance_now = std::max(1.0, (model.position(NodeIndex(n)) - view.eye).norm());
+        ASSERT_LE(std::sqrt(near2) * 1000 / distance_now, 1.2 * 2 + 1e-6) << "pixels, edit " << edit;
       }
     }
   }
@@ -366,6 +368,38 @@ TEST(Levels, hold_slivers_points_and_coordinates_far_from_zero) {
   choose(levels, {}, far, {1}, clusters);
   EXPECT_LT(triangles_of(levels, clusters), model.shell_count());
   for (const Group& group : levels.groups) EXPECT_TRUE(std::isfinite(group.error) && std::isfinite(group.sphere.radius));
+}
+
+TEST(Levels, keep_junctions_of_sheets_together) {
+  Sheets sheets;  // five sheets that meet in one line
+  std::vector<std::uint32_t> line;
+  for (int k = 0; k <= 200; ++k) line.push_back(sheets.node({double(k), 0, 0}));
+  for (int sheet = 0; sheet < 5; ++sheet) {
+    std::vector<std::uint32_t> before = line;
+    for (int row = 1; row <= 20; ++row) {
+      std::vector<std::uint32_t> now;
+      for (int k = 0; k <= 200; ++k) now.push_back(sheets.node({double(k), row * std::cos(1.2 * sheet), row * std::sin(1.2 * sheet)}));
+      for (std::size_t k = 0; k < 200; ++k) sheets.quad({before[k], before[k + 1], now[k + 1], now[k]}, 0);
+      before = now;
+    }
+  }
+  const Model model = sheets.model();
+  const Levels levels = build_levels(model).value();
+  const std::set<std::uint32_t> joint(line.begin(), line.end());
+  std::size_t coarse = 0;
+  from_everywhere(model, levels, [&](const std::vector<std::uint32_t>& clusters, const Viewpoint&) {
+    std::map<std::pair<std::uint32_t, std::uint32_t>, int> on_line;
+    const auto triangles = triangles_of_clusters(model, levels, clusters);
+    for (const CoarseTriangle& t : triangles)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t a = t.node[k].value, b = t.node[(k + 1) % 3].value;
+        if (joint.count(a) > 0 && joint.count(b) > 0) ++on_line[std::minmax(a, b)];
+      }
+    for (const auto& [edge, uses] : on_line)
+      ASSERT_EQ(uses, 5) << "a sheet has come off between nodes " << edge.first << " and " << edge.second;
+    coarse += triangles.size() < model.shell_count() / 10 ? 1 : 0;
+  });
+  EXPECT_GT(coarse, 0u);
 }
 
 TEST(Levels, stop_when_told) {
