@@ -110,7 +110,11 @@ Result<void> Editor::make_levels() {
   auto made = levels_.turn(context_.clock.now_ns(), renderer.shared_model(), !renderer.levels_are_current());
   if (!made) return {};
   context_.trace.line("levels " + std::to_string(made->levels.clusters.size()) + " clusters");
-  return renderer.set_levels(std::move(made));
+  return renderer.set_levels(std::move(*made));
+}
+
+bool Editor::prepare_picking(std::int64_t budget_ns) {
+  return context_.renderer.draw_items_piece(toolkit::aim(context_.view), context_.clock, budget_ns);
 }
 
 /// The newest state becomes the one that is shown.

@@ -50,6 +50,8 @@ class Editor {
   Result<void> follow();
   /// Has levels of detail made of what is shown, and takes them over. Call it in each turn of the loop. Errors: no graphics memory.
   Result<void> make_levels();
+  /// Draws a piece of what picking needs, in about `budget_ns`. Returns whether it is whole.
+  bool prepare_picking(std::int64_t budget_ns);
   /// When make_levels must be called at the latest; nothing: there is nothing to do.
   std::optional<std::int64_t> next_levels_ns() const { return levels_.next_ns(context_.clock.now_ns()); }
 

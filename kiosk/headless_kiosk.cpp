@@ -64,7 +64,7 @@ Result<void> HeadlessKiosk::run() {
 
 Result<void> HeadlessKiosk::shoot() {
   const stereo::SeenFrom seen = station_.eyes.seen();
-  if (Result<void> drawn = station_.screen.draw(target_.framebuffer(), std::nullopt, false); !drawn) return drawn;
+  if (Result<void> drawn = station_.screen.draw(target_.framebuffer(), std::nullopt, Screen::Pace::rest); !drawn) return drawn;
   const std::int64_t lit = station_.eyes.lit_ns();
   station_.eyes.taken();
   const std::filesystem::path file = options_.shots / fmt::format("frame-{:04}.png", ++taken_);

@@ -1,5 +1,7 @@
 #include "kiosk/levels_worker.h"
 
+#include <malloc.h>
+
 #include <new>
 #include <utility>
 
@@ -17,8 +19,8 @@ bool same(const std::weak_ptr<const render::ModelSource>& a, const std::shared_p
 
 LevelsWorker::~LevelsWorker() { stop(); }
 
-std::shared_ptr<const render::MadeLevels> LevelsWorker::turn(std::int64_t now_ns, const std::shared_ptr<const render::ModelSource>& shown,
-                                                             bool wanted) {
+std::optional<render::MadeLevels> LevelsWorker::turn(std::int64_t now_ns, const std::shared_ptr<const render::ModelSource>& shown,
+                                                     bool wanted) {
   if (!same(seen_, shown)) {
     seen_ = shown;
     since_ns_ = now_ns;
@@ -27,7 +29,7 @@ std::shared_ptr<const render::MadeLevels> LevelsWorker::turn(std::int64_t now_ns
   if (source_ && done_) {
     thread_.join();
     source_.reset();
-    return std::exchange(made_, nullptr);
+    return std::exchange(made_, std::nullopt);
   }
   const bool large = shown && shown->size(ipc::SnapshotArray::shell_nodes) > kFewestShells;
   waiting_ = !source_ && wanted && large;
@@ -35,7 +37,7 @@ std::shared_ptr<const render::MadeLevels> LevelsWorker::turn(std::int64_t now_ns
     waiting_ = false;
     begin(shown);
   }
-  return nullptr;
+  return std::nullopt;
 }
 
 std::optional<std::int64_t> LevelsWorker::next_ns(std::int64_t now_ns) const {
@@ -50,10 +52,11 @@ void LevelsWorker::begin(const std::shared_ptr<const render::ModelSource>& sourc
   thread_ = std::thread([this] {
     try {
       Result<render::MadeLevels> made = render::make_levels(*source_, [this](double) { return !cancelled_; });
-      if (made) made_ = std::make_shared<const render::MadeLevels>(std::move(*made));
+      if (made) made_ = std::move(*made);
     } catch (const std::bad_alloc&) {
       // The model is drawn as it is.
     }
+    ::malloc_trim(0);  // making them takes more than they hold; what is free goes back
     done_ = true;
   });
 }

@@ -26,7 +26,7 @@ class LevelsWorker {
 
   /// Call it in each turn of the loop. `shown`: the model; null: none. `wanted`: it has no levels, or they are out of date. Returns levels
   /// that are made, once.
-  std::shared_ptr<const render::MadeLevels> turn(std::int64_t now_ns, const std::shared_ptr<const render::ModelSource>& shown, bool wanted);
+  std::optional<render::MadeLevels> turn(std::int64_t now_ns, const std::shared_ptr<const render::ModelSource>& shown, bool wanted);
   /// When `turn` must be called at the latest; nothing: there is nothing to do.
   std::optional<std::int64_t> next_ns(std::int64_t now_ns) const;
 
@@ -38,7 +38,7 @@ class LevelsWorker {
   std::shared_ptr<const render::ModelSource> source_;  ///< released here, not by the thread
   std::atomic<bool> cancelled_ = false;
   std::atomic<bool> done_ = false;
-  std::shared_ptr<const render::MadeLevels> made_;  ///< written before done_
+  std::optional<render::MadeLevels> made_;  ///< written before done_
   std::weak_ptr<const render::ModelSource> seen_;
   std::int64_t since_ns_ = 0;
   bool waiting_ = false;

@@ -1,4 +1,6 @@
 // prismesh-kiosk: shows the model and edits it by mouse and keyboard.
+#include <malloc.h>
+
 #include <charconv>
 #include <cstdio>
 #include <string>
@@ -95,6 +97,7 @@ int run_interactive(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  ::mallopt(M_MMAP_THRESHOLD, 4 << 20);  // a large model's arrays go back to the system when they are freed
   for (int i = 1; i < argc; ++i)
     if (std::string_view(argv[i]) == "--render") return prismesh::kiosk::render_main(std::vector<std::string>(argv + 1, argv + argc));
   return run_interactive(argc, argv);

@@ -30,6 +30,8 @@ class PictureWatch {
   void draws(std::size_t shells);
   /// Called in each turn of the kiosk's loop. `asked`: what is shown is out of date.
   void turn(std::int64_t now_ns, bool asked);
+  /// A piece of a picture was drawn: the wait for it begins anew.
+  void draws_piece() { asked_ns_.reset(); }
   /// A picture has appeared.
   void shown();
   /// When `turn` must be called at the latest, so that the report isn't late; nothing: no report is wanted.

@@ -50,18 +50,24 @@ void Screen::trace_items(std::vector<panels::ScreenItem> items) {
   traced_ = std::move(items);
 }
 
-Result<void> Screen::draw(unsigned framebuffer, const std::optional<input::Pixel>& pointer, bool moving) {
+Result<void> Screen::draw(unsigned framebuffer, const std::optional<input::Pixel>& pointer, Pace pace) {
   pointer_ = pointer;
   // Panels that fit their content have their size after the second time.
   for (int round = 0; round < 2; ++round)
     if (Result<void> laid_out = lay_out(); !laid_out) return laid_out;
   render::Picture picture = editor_.picture();
-  picture.moving = moving;
+  picture.moving = pace == Pace::moving;
+  picture.waiting = pace == Pace::waiting;
   picture.overlay = [&](const render::EyeImage& image) { gui_.draw({image.width, image.height}, image.from_picture); };
   const Result<render::DrawReport> report = editor_.context().renderer.draw(picture, framebuffer, size_.width, size_.height);
   if (!report) return fail(report.error());
   editor_.set_report(*report);
   return {};
+}
+
+Result<bool> Screen::draw_piece(std::int64_t budget_ns) {
+  toolkit::ToolContext& context = editor_.context();
+  return context.renderer.draw_piece(editor_.picture(), size_.width, size_.height, context.clock, budget_ns);
 }
 
 }  // namespace prismesh::kiosk

@@ -24,8 +24,10 @@ class Screen {
   /// isn't lost.
   Result<void> lay_out();
   /// `pointer`: drawn into the picture, where the display has none of its own or that would lie on the woven picture.
-  /// `moving`: draws for speed, see render::Picture.
-  Result<void> draw(unsigned framebuffer, const std::optional<input::Pixel>& pointer, bool moving);
+  enum class Pace : std::uint8_t { rest, moving, waiting };  ///< see render::Picture
+  Result<void> draw(unsigned framebuffer, const std::optional<input::Pixel>& pointer, Pace pace);
+  /// Draws a piece of the picture at rest, in about `budget_ns`. Returns whether it is whole: then `draw` shows it fast.
+  Result<bool> draw_piece(std::int64_t budget_ns);
 
  private:
   void trace_items(std::vector<panels::ScreenItem> items);

@@ -22,6 +22,8 @@ constexpr std::int64_t kCaretBlinkNs = 300'000'000;  ///< the caret of a text fi
 constexpr std::int64_t kWheelRestNs = 250'000'000;   ///< the wheel counts as still this long after its last step
 constexpr std::int64_t kPointerRestNs = 60'000'000;  ///< the pointer rests this long after its last move
 constexpr std::int64_t kWordNs = 220'000'000;        ///< letters of a word come faster than that
+constexpr std::int64_t kPieceNs = 50'000'000;        ///< of a picture at rest, between two looks at the input
+constexpr std::int64_t kLongTurnNs = 30'000'000;
 constexpr std::int64_t kForEverNs = -1;
 constexpr std::int64_t kDaemonTriesNs = 1'000'000'000;  ///< between two attempts to reach a missing device daemon, or the pen's process
 constexpr std::int64_t kPenLookNs = 8'000'000;          ///< between two looks at a pen, which moves without a message
@@ -40,6 +42,7 @@ WindowedKiosk::WindowedKiosk(display::Window& window, Station& station) : window
 Result<void> WindowedKiosk::run() {
   if (Result<void> laid_out = station_.screen.lay_out(); !laid_out) return laid_out;  // so that the panels' width is known
   while (!station_.editor.context().quits) {
+    looks();
     const Result<std::vector<display::WindowEvent>> events = window_.take_events();
     if (!events) return fail(events.error());
     for (const display::WindowEvent& event : *events) {
@@ -59,20 +62,53 @@ Result<void> WindowedKiosk::run() {
     if (*drawn) watch_.shown();
     watch_.turn(station_.clock.now_ns(), stale());
     rest_traced_ = rest_traced_ && !*drawn;
-    if (*drawn || !events->empty()) continue;
+    if (*drawn || piece_drawn_ || put_off_ || !events->empty()) continue;
     if (!stale() && !std::exchange(rest_traced_, true)) trace_rest();
     wait();
+    looked_ns_ = station_.clock.now_ns();
   }
   return {};
+}
+
+/// Keeps the longest time in which the input wasn't looked at although something was done.
+void WindowedKiosk::looks() {
+  const std::int64_t now = station_.clock.now_ns();
+  if (looked_ns_ != 0) longest_ns_ = std::max(longest_ns_, now - looked_ns_);
+  looked_ns_ = now;
 }
 
 /// Looks at the eyes and draws, if it is time to and something has changed. Returns whether a picture was drawn.
 Result<bool> WindowedKiosk::beat() {
   if (!stale() && !station_.eyes.watches()) return false;
-  if (station_.clock.now_ns() < station_.eyes.next_look_ns()) return false;
+  if (!piece_drawn_ && !put_off_ && station_.clock.now_ns() < station_.eyes.next_look_ns()) return false;
   const bool seen_otherwise = station_.look();
   if (!seen_otherwise && !stale()) return false;
-  if (Result<void> shown = show(); !shown) return fail(shown.error());
+  return draw();
+}
+
+/// A large model at rest is drawn in pieces, between which input is looked at; until the picture is whole, one that is drawn for speed
+/// shows what has changed. Returns whether a picture was shown.
+Result<bool> WindowedKiosk::draw() {
+  const bool large = shows_large();
+  const bool changed = dirty_ || station_.editor.changes() != shown_changes_;
+  // A turn that took over a large model looks at the input before it draws.
+  if (large && station_.clock.now_ns() - looked_ns_ > kLongTurnNs && !std::exchange(put_off_, true)) return false;
+  put_off_ = false;
+  auto pace = large && (moving() || gliding()) ? Screen::Pace::moving : Screen::Pace::rest;
+  if (!large || pace == Screen::Pace::moving) {
+    piece_drawn_ = false;
+  } else if (changed && std::exchange(piece_drawn_, false)) {
+    pace = Screen::Pace::waiting;
+  } else {
+    const Result<bool> whole = station_.screen.draw_piece(kPieceNs);
+    if (!whole) return fail(whole.error());
+    piece_drawn_ = !*whole;
+    shown_moving_ = true;
+    watch_.draws_piece();
+    if (!*whole) return false;
+    rests_ns_ = station_.clock.now_ns();  // what picking needs is drawn ahead
+  }
+  if (Result<void> drawn = show(pace); !drawn) return fail(drawn.error());
   return true;
 }
 
@@ -230,9 +266,18 @@ std::optional<input::Pixel> WindowedKiosk::pointer_on_picture() const {
 /// The pointer has rested: what is under it is told.
 void WindowedKiosk::point() {
   if (!rests_ns_ || moving() || station_.clock.now_ns() < *rests_ns_) return;
+  if (shows_large()) {
+    if (piece_drawn_) return;  // first the picture
+    if (!station_.editor.prepare_picking(kPieceNs)) return;
+  }
   rests_ns_.reset();
   if (station_.screen.gui().popup_open()) return;  // a menu may be about what was under it
   station_.editor.point_at(pointer_on_picture());
+}
+
+bool WindowedKiosk::shows_large() const {
+  const auto& shown = station_.editor.context().shown.snapshot;
+  return shown && shown->shell_count() > LevelsWorker::kFewestShells;
 }
 
 Result<void> WindowedKiosk::settle() {
@@ -246,14 +291,14 @@ void WindowedKiosk::offer_copied() {
   if (const std::optional<std::string> copied = station_.screen.gui().take_copied()) window_.set_clipboard(*copied);
 }
 
-Result<void> WindowedKiosk::show() {
+Result<void> WindowedKiosk::show(Screen::Pace pace) {
   shown_changes_ = station_.editor.changes();
   dirty_ = edge_fed_ = false;
   window_.show_pointer(!station_.editor.profile().stereo());
-  const auto& shown = station_.editor.context().shown.snapshot;
-  shown_moving_ = moving() && shown && shown->shell_count() > LevelsWorker::kFewestShells;
+  const std::int64_t begun_ns = station_.clock.now_ns();
+  shown_moving_ = pace != Screen::Pace::rest;
   const std::optional<input::Pixel> pointer = draws_pointer() ? gestures_.position() : std::nullopt;
-  if (Result<void> drawn = station_.screen.draw(0, pointer, shown_moving_); !drawn) return drawn;
+  if (Result<void> drawn = station_.screen.draw(0, pointer, pace); !drawn) return drawn;
   if (station_.eyes.watches()) window_.finish();
   offer_copied();
   station_.eyes.drawn(station_.eyes.watches() ? window_.last_refresh_ns() : std::nullopt);
@@ -261,6 +306,9 @@ Result<void> WindowedKiosk::show() {
   // A picture may take longer than a wheel's steps lie apart.
   if (station_.clock.now_ns() < wheel_rest_ns_ + kWheelRestNs)
     wheel_rest_ns_ = std::max(wheel_rest_ns_, station_.clock.now_ns() + kWheelRestNs);
+  const char* const paces[] = {"at rest", "moving", "waiting"};
+  const double took_ms = static_cast<double>(station_.clock.now_ns() - begun_ns) * 1e-6;
+  station_.trace.line(fmt::format("drawn {} in {:.1f} ms", paces[static_cast<std::size_t>(pace)], took_ms));
   trace_picture();
   return {};
 }
@@ -276,6 +324,7 @@ void WindowedKiosk::trace_picture() {
 void WindowedKiosk::trace_rest() {
   const std::optional<input::Pixel> at = gestures_.position();
   const std::string where = at ? fmt::format("{} {}", at->x(), at->y()) : "none";
+  station_.trace.line(fmt::format("looked within {:.0f} ms", static_cast<double>(std::exchange(longest_ns_, 0)) * 1e-6));
   station_.trace.line(fmt::format("rests presses {} releases {} pointer {}", presses_, releases_, where));
 }
 

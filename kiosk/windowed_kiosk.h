@@ -28,6 +28,7 @@ class WindowedKiosk {
   Result<void> fire_held();
   Result<void> settle();
   void point();
+  bool shows_large() const;
   void offer_copied();
   void find_place() { station_.place(window_.monitor(), window_.position()); }
   /// The display's own pointer isn't woven, and some displays have none.
@@ -39,9 +40,11 @@ class WindowedKiosk {
   /// The picture on the display is out of date.
   bool stale() const { return dirty_ || station_.editor.changes() != shown_changes_ || (shown_moving_ && !moving()) || gliding(); }
   Result<bool> beat();
-  Result<void> show();
+  Result<bool> draw();
+  Result<void> show(Screen::Pace pace);
   void trace_picture();
   void trace_rest();
+  void looks();
   void wait();
   std::int64_t patience_ns() const;
   std::optional<input::Pixel> pointer_on_picture() const;
@@ -65,9 +68,13 @@ class WindowedKiosk {
   bool edge_fed_ = false;  ///< the panels haven't handled a press or release yet
   bool dirty_ = true;
   bool fullscreen_ = false;
-  bool shown_moving_ = false;  ///< the last picture was drawn for speed
+  bool shown_moving_ = false;  ///< the last picture was drawn for speed, or waits for one at rest
+  bool put_off_ = false;       ///< a picture, as the last turn was long
+  bool piece_drawn_ = false;   ///< in the last turn, of a picture at rest
   std::int64_t wheel_rest_ns_ = 0;
   std::optional<std::int64_t> rests_ns_;  ///< when the pointer will have rested; nothing: it has been looked at
+  std::int64_t looked_ns_ = 0;            ///< when the input was last looked at, or waited for; 0: not yet
+  std::int64_t longest_ns_ = 0;           ///< between two looks, since it was last told
   std::uint64_t shown_changes_ = 0;
   std::uint64_t pictures_ = 0;
   std::uint64_t presses_ = 0, releases_ = 0;  ///< of buttons; a step of the wheel is a press

@@ -31,29 +31,30 @@ void ContactPass::draw(const ModelLayer& model, const Frame& frame) const {
   blend_by_alpha();
   glDepthMask(GL_FALSE);
   glDepthFunc(GL_GREATER);
-  draw_shells(marks.chosen(), positions, kHiddenAlpha);
+  draw_shells(marks.chosen(), positions, kHiddenAlpha, frame.span);
   if (dragged) {
-    draw_shells(marks.touched(), positions, kHiddenAlpha);
-    draw_shells(marks.moved(), model.preview_positions(), kHiddenAlpha);
+    draw_shells(marks.touched(), positions, kHiddenAlpha, frame.span);
+    draw_shells(marks.moved(), model.preview_positions(), kHiddenAlpha, frame.span);
   }
   glDepthFunc(GL_LEQUAL);
-  draw_shells(marks.shells(), positions, 1);
-  draw_shells(marks.chosen(), positions, 1);
+  draw_shells(marks.shells(), positions, 1, frame.span);
+  draw_shells(marks.chosen(), positions, 1, frame.span);
   if (dragged) {
-    draw_shells(marks.touched(), positions, 1);
+    draw_shells(marks.touched(), positions, 1, frame.span);
     glDepthMask(GL_TRUE);  // no other surface is drawn where these are
-    draw_shells(marks.moved(), model.preview_positions(), 1);
+    draw_shells(marks.moved(), model.preview_positions(), 1, frame.span);
   }
   glDepthMask(GL_TRUE);
 }
 
-void ContactPass::draw_shells(const ContactMarks::Shells& shells, const RowTexture& positions, float alpha) const {
-  if (shells.count == 0) return;
+void ContactPass::draw_shells(const ContactMarks::Shells& shells, const RowTexture& positions, float alpha, DrawSpan& span) const {
+  const DrawSpan::Part now = span.take(shells.count);
+  if (now.count == 0) return;
   positions.bind(unit::kPositions);
   shells.connectivity.bind(unit::kConnectivity);
   shaders_.alert.set("alpha", alpha);
   glBindVertexArray(no_attributes_.get());
-  glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(shells.count * 6));
+  glDrawArrays(GL_TRIANGLES, static_cast<GLint>(now.first * 6), static_cast<GLsizei>(now.count * 6));
 }
 
 }  // namespace prismesh::kiosk::render

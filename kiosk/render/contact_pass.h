@@ -20,7 +20,7 @@ class ContactPass {
   void draw(const ModelLayer& model, const Frame& frame) const;
 
  private:
-  void draw_shells(const ContactMarks::Shells& shells, const RowTexture& positions, float alpha) const;
+  void draw_shells(const ContactMarks::Shells& shells, const RowTexture& positions, float alpha, DrawSpan& span) const;
 
   const Shaders& shaders_;
   gl::VertexArray no_attributes_;

@@ -1,6 +1,7 @@
 #include "kiosk/render/eye_images.h"
 
 #include <string>
+#include <utility>
 
 namespace prismesh::kiosk::render {
 
@@ -48,13 +49,17 @@ bool EyeImages::make_flat(Flat& flat) const {
   glBindFramebuffer(GL_FRAMEBUFFER, flat.framebuffer.get());
   glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, flat.colour.get(), 0);
   const bool complete = glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
-  flat.kept_colour = gl::Renderbuffer::make();
-  glBindRenderbuffer(GL_RENDERBUFFER, flat.kept_colour.get());
+  return make_resolved(flat.kept, flat.kept_colour) && complete;
+}
+
+bool EyeImages::make_resolved(gl::Framebuffer& framebuffer, gl::Renderbuffer& colour) const {
+  colour = gl::Renderbuffer::make();
+  glBindRenderbuffer(GL_RENDERBUFFER, colour.get());
   glRenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, width_, height_);
-  flat.kept = gl::Framebuffer::make();
-  glBindFramebuffer(GL_FRAMEBUFFER, flat.kept.get());
-  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, flat.kept_colour.get());
-  return complete && glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
+  framebuffer = gl::Framebuffer::make();
+  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.get());
+  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, colour.get());
+  return glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
 }
 
 void EyeImages::bind_scene() const {
@@ -69,6 +74,21 @@ void EyeImages::copy(const gl::Framebuffer& from, const gl::Framebuffer& to) con
 }
 
 void EyeImages::keep_scene(int eye) const { copy(scene_, flat_[static_cast<std::size_t>(eye)].kept); }
+
+bool EyeImages::put_aside(int eye) {
+  Flat& flat = flat_[static_cast<std::size_t>(eye)];
+  if (!flat.aside && !make_resolved(flat.aside, flat.aside_colour)) return false;
+  copy(scene_, flat.aside);
+  return true;
+}
+
+void EyeImages::keep_aside() {
+  for (Flat& flat : flat_) {
+    if (!flat.aside) continue;
+    std::swap(flat.kept, flat.aside);
+    std::swap(flat.kept_colour, flat.aside_colour);
+  }
+}
 
 void EyeImages::bind_flat(int eye) const {
   const Flat& flat = flat_[static_cast<std::size_t>(eye)];

@@ -16,6 +16,10 @@ class EyeImages {
   void bind_scene() const;
   /// Resolves the finished scene and keeps it as the image of `eye` (0 left or only, 1 right).
   void keep_scene(int eye) const;
+  /// Resolves the finished scene and puts it aside as the next image of `eye`. Returns false if there is no graphics memory.
+  bool put_aside(int eye);
+  /// Keeps the images that were put aside.
+  void keep_aside();
   /// Copies the kept scene of an eye into its flat image and binds that, to draw what lies in the screen's plane.
   void bind_flat(int eye) const;
   /// Binds the flat image of an eye as a texture.
@@ -29,10 +33,13 @@ class EyeImages {
     gl::Texture colour;
     gl::Framebuffer kept;
     gl::Renderbuffer kept_colour;
+    gl::Framebuffer aside;  ///< made when it is needed first
+    gl::Renderbuffer aside_colour;
   };
   // Allocate for the current size. False: no graphics memory.
   bool make_scene();
   bool make_flat(Flat& flat) const;
+  bool make_resolved(gl::Framebuffer& framebuffer, gl::Renderbuffer& colour) const;
   void copy(const gl::Framebuffer& from, const gl::Framebuffer& to) const;
 
   int width_ = 0;

@@ -16,7 +16,8 @@ Eigen::Matrix3d picture_from(const EyeImage& image) {
   return to_picture.inverse() * from_texels;
 }
 
-Frame::Frame(const EyeView& eye_view, const Picture& picture, const ModelLayer& model) : eye(eye_view), view(picture.view) {
+Frame::Frame(const EyeView& eye_view, const Picture& picture, const ModelLayer& model, DrawSpan& drawn)
+    : eye(eye_view), view(picture.view), span(drawn) {
   const Eigen::Matrix4d screen_from_deck = stereo::screen_from_deck(view);
   clip_from_deck = eye.clip_from_screen * screen_from_deck;
   Eigen::Matrix4d deck_from_model = Eigen::Matrix4d::Identity();

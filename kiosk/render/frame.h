@@ -1,6 +1,7 @@
 // Viewpoint and projection of one image, and the uniforms that all its draws share.
 #pragma once
 
+#include "kiosk/render/draw_span.h"
 #include "kiosk/render/gl.h"
 #include "kiosk/render/model_layer.h"
 #include "kiosk/render/palette.h"
@@ -28,6 +29,7 @@ struct RadiusLimits {
 struct Frame {
   const EyeView& eye;
   const stereo::View& view;
+  DrawSpan& span;  ///< which of its draws are made
   Eigen::Matrix4d clip_from_deck;
   Eigen::Matrix4f clip_from_model;  ///< model coordinates are relative to the model's origin
   Eigen::Matrix4f screen_from_model;
@@ -37,7 +39,7 @@ struct Frame {
   // Maps between steps on the display (pixels, y up), in normalised coordinates and in texels of the image.
   Eigen::Matrix2f clip_from_pixels, pixels_from_clip, texels_from_pixels, pixels_from_texels;
 
-  Frame(const EyeView& eye_view, const Picture& picture, const ModelLayer& model);
+  Frame(const EyeView& eye_view, const Picture& picture, const ModelLayer& model, DrawSpan& drawn);
 
   /// Radius in pixels of a mark on a node or shell: limits.share_of_side of the typical side, within the limits; without such a side the
   /// max.

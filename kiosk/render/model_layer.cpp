@@ -130,9 +130,7 @@ Result<void> ModelLayer::set_model(std::shared_ptr<const ModelSource> source) {
   return loose_.update(*table_, textures_.origin(), all, changes->moved_chunks, visible, &covered_);
 }
 
-Result<void> ModelLayer::set_levels(std::shared_ptr<const MadeLevels> made) {
-  return table_ ? shell_draws_.set_levels(std::move(made), *table_, textures_) : Result<void>();
-}
+Result<void> ModelLayer::set_levels(MadeLevels made) { return table_ ? shell_draws_.set_levels(std::move(made), *table_) : Result<void>(); }
 
 Result<void> ModelLayer::update_line_elements(bool changed) {
   std::vector<std::uint64_t> versions;

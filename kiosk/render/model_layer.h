@@ -34,7 +34,7 @@ class ModelLayer {
   /// Takes over a model; null: none. Errors: too large for the GPU, no graphics memory.
   Result<void> set_model(std::shared_ptr<const ModelSource> source);
   /// Takes over levels of detail; ignored unless they were made of this model's shells. Errors: no graphics memory.
-  Result<void> set_levels(std::shared_ptr<const MadeLevels> made);
+  Result<void> set_levels(MadeLevels made);
   ShellDraws& shell_draws() { return shell_draws_; }
   const ShellDraws& shell_draws() const { return shell_draws_; }
   bool empty() const { return !table_; }

@@ -80,8 +80,10 @@ void NodePass::draw(const ModelLayer& model, const Frame& frame) const {
     solid.program.set("grow", grow);
     solid.program.set("ink", colour.x(), colour.y(), colour.z(), 1.0F);
     for (const Run& run : seen) {
-      solid.program.set("first", static_cast<int>(run.first));
-      glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(run.count) * solid.indices_each, GL_UNSIGNED_SHORT, nullptr);
+      const DrawSpan::Part now = frame.span.take(run.count);
+      if (now.count == 0) continue;
+      solid.program.set("first", static_cast<int>(run.first + now.first));
+      glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(now.count) * solid.indices_each, GL_UNSIGNED_SHORT, nullptr);
     }
   };
   glDepthMask(GL_FALSE);

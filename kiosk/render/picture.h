@@ -120,6 +120,9 @@ struct Picture {
   std::optional<Vec3> marked_point;        ///< the node that the view went to, deck coordinates: a ball with a ring
   bool selected_nodes = true;
   bool moving = false;  ///< the view turns or something is dragged: drawn without multisampling, which is faster for large models
+  /// Stands for a picture at rest that is drawn in pieces: a moving one if the model has levels of detail, else with the scene of the last
+  /// picture.
+  bool waiting = false;
   std::optional<Handle> handle;
   std::optional<Handle> cut_handle;  ///< the plane that cuts the model: its arrow, and the outline of the plane
   std::optional<Pen> pen;

@@ -1,6 +1,7 @@
 #include "kiosk/render/renderer.h"
 
 #include <algorithm>
+#include <limits>
 #include <string_view>
 #include <tuple>
 #include <utility>
@@ -23,6 +24,7 @@ constexpr double kMinViewerMm = 20;
 constexpr std::size_t kMovingTrianglesInSoftware = 60'000;
 constexpr std::size_t kMovingTriangles = 4'000'000;
 constexpr double kHalfGapPixels = 4;  ///< half the width of the ground between two views
+constexpr std::size_t kFirstPiece = 20'000, kSmallestPiece = 1'000, kLargestPiece = 1'000'000'000;  ///< elements
 
 /// The input from which the scene in the eyes' images was drawn.
 struct DrawnScene {
@@ -48,6 +50,12 @@ bool same_composition(const Picture& a, const Picture& b) {
     return std::tie(p.profile, p.between_eyes_mm, p.toward_right, p.eye_separation_mm, p.depth_share, p.mask_mm, p.panel);
   };
   return facts(a) == facts(b);
+}
+
+/// How many elements are drawn before the clock is looked at again, after so many took that time.
+std::size_t next_count(std::size_t count, std::int64_t took_ns, std::int64_t budget_ns) {
+  const double share = std::clamp(static_cast<double>(budget_ns) / static_cast<double>(took_ns), 0.5, 2.0);
+  return std::clamp(static_cast<std::size_t>(static_cast<double>(count) * share), kSmallestPiece, kLargestPiece);
 }
 
 EyeView eye_view(const Picture& picture, const ComposedImage& image, int width, int height) {
@@ -90,6 +98,16 @@ struct Renderer::Impl {
   Images fine;
   Images coarse;                    ///< without multisampling
   std::uint64_t scene_version = 0;  ///< increases with each change of the model or the preview
+  Images* last = nullptr;           ///< of the last picture
+  /// A scene that is drawn in pieces into `fine`.
+  struct Pieces {
+    DrawnScene scene;
+    std::size_t image = 0;  ///< that is being drawn
+    std::size_t done = 0;   ///< elements of it
+    std::size_t count = 0;
+  };
+  std::optional<Pieces> pieces;
+  std::size_t at_once = kFirstPiece;  ///< elements of a piece that are drawn before the clock is looked at
   WeavePass weave;
   // The last composition. Kept, as most pictures differ in nothing that it depends on.
   Composition composition;
@@ -102,6 +120,14 @@ struct Renderer::Impl {
   ItemImage items;
   Eigen::Matrix4d items_clip = Eigen::Matrix4d::Zero();
   std::uint64_t items_version = 0;
+  /// An item image that is drawn in pieces.
+  struct ItemPieces {
+    Eigen::Matrix4d clip;
+    std::uint64_t version = 0;
+    std::size_t done = 0;  ///< elements
+  };
+  std::optional<ItemPieces> item_pieces;
+  std::size_t items_at_once = kFirstPiece;
   Figures figures;
 
   Impl(const RendererOptions& wanted, Shaders linked) : options(wanted), shaders(std::move(linked)), scene(shaders), flat(shaders) {}
@@ -109,10 +135,15 @@ struct Renderer::Impl {
   Impl& operator=(const Impl&) = delete;
 
   Result<void> draw_scene(Images& images, const Picture& picture, int width, int height, int samples);
-  void draw_views(const Picture& picture, const EyeView& eye, int width);
+  Result<void> prepare(Images& images, const Picture& picture, int samples);
+  void draw_views(const Picture& picture, const EyeView& eye, int width, DrawSpan& span);
+  Result<bool> draw_next(Pieces& next, Clock& clock, std::int64_t budget_ns);
+  bool can_wait_with(const DrawnScene& wanted) const;
   void compose_for(const Picture& picture, int width, int height);
   bool make_item_buffer(int width, int height);
   void read_items(int width, int height);
+  bool have_items(const stereo::Aim& aim) const;
+  bool draw_items(const stereo::Aim& aim, std::size_t count);
   const ItemImage& items_for(const stereo::Aim& aim);
 };
 
@@ -141,7 +172,11 @@ Result<void> Renderer::set_model(std::shared_ptr<const ModelSource> model) {
   return done;
 }
 
-Result<void> Renderer::set_levels(std::shared_ptr<const MadeLevels> made) { return impl_->layer.set_levels(std::move(made)); }
+Result<void> Renderer::set_levels(MadeLevels made) {
+  impl_->pieces.reset();  // shells are drawn in another order
+  impl_->item_pieces.reset();
+  return impl_->layer.set_levels(std::move(made));
+}
 
 bool Renderer::levels_are_current() const {
   return impl_->layer.empty() || (impl_->layer.shell_draws().has_levels() && !impl_->layer.shell_draws().is_out_of_date());
@@ -166,6 +201,7 @@ Result<void> Renderer::set_field(Pane pane, std::span<const float> values, bool 
 Result<void> Renderer::set_part_paints(std::span<const PartPaint> paints) {
   ++impl_->scene_version;
   impl_->items_version = 0;
+  impl_->item_pieces.reset();
   return impl_->paint.set(paints);
 }
 
@@ -222,13 +258,18 @@ Result<DrawReport> Renderer::draw(const Picture& picture, unsigned framebuffer, 
   DrawnScene wanted{picture, impl_->composition.images, width, height, impl_->scene_version};
   wanted.picture.overlay = nullptr;
   // A moving picture is drawn coarsely only if the fine images don't show its scene already.
-  const bool fine = !picture.moving || (impl_->fine.kept && impl_->fine.kept->same_scene(wanted));
-  Impl::Images& images = fine ? impl_->fine : impl_->coarse;
-  if (!images.kept || !images.kept->same_scene(wanted)) {
-    if (Result<void> drawn = impl_->draw_scene(images, picture, width, height, fine ? impl_->options.samples : 1); !drawn)
+  const bool fine = !(picture.moving || picture.waiting) || (impl_->fine.kept && impl_->fine.kept->same_scene(wanted));
+  const bool waits = !fine && picture.waiting && impl_->can_wait_with(wanted);
+  Impl::Images& images = waits ? *impl_->last : fine ? impl_->fine : impl_->coarse;
+  if (!waits && (!images.kept || !images.kept->same_scene(wanted))) {
+    if (fine || !impl_->pieces || !impl_->pieces->scene.same_scene(wanted)) impl_->pieces.reset();
+    Picture scene = wanted.picture;
+    scene.moving = !fine;
+    if (Result<void> drawn = impl_->draw_scene(images, scene, width, height, fine ? impl_->options.samples : 1); !drawn)
       return fail(drawn.error());
     images.kept = std::move(wanted);
   }
+  impl_->last = &images;
   const std::vector<ComposedImage>& composed = impl_->composition.images;
   for (std::size_t i = 0; i < composed.size(); ++i) {
     reset_after_overlay();
@@ -258,28 +299,94 @@ void Renderer::Impl::compose_for(const Picture& picture, int width, int height) 
 
 Result<void> Renderer::Impl::draw_scene(Images& images, const Picture& picture, int width, int height, int samples) {
   images.kept.reset();
+  if (Result<void> prepared = prepare(images, picture, samples); !prepared) return prepared;
   const std::vector<ComposedImage>& composed = composition.images;
-  if (Result<void> sized = images.eyes.resize(composed.front().width, composed.front().height, samples); !sized) return sized;
-  if (Result<void> prepared = scene.prepare(picture, layer); !prepared) return prepared;
-  if (picture.two_views) {
-    Picture beside = picture;
-    beside.shadows = false;
-    if (Result<void> prepared = scene.prepare(beside, other_layer); !prepared) return prepared;
-  }
   for (std::size_t i = 0; i < composed.size(); ++i) {
+    DrawSpan whole;
     images.eyes.bind_scene();
-    draw_views(picture, eye_view(picture, composed[i], width, height), width);
+    draw_views(picture, eye_view(picture, composed[i], width, height), width, whole);
     images.eyes.keep_scene(static_cast<int>(i));
   }
   ++figures.scenes_drawn;
   return {};
 }
 
+Result<void> Renderer::Impl::prepare(Images& images, const Picture& picture, int samples) {
+  const ComposedImage& first = composition.images.front();
+  if (Result<void> sized = images.eyes.resize(first.width, first.height, samples); !sized) return sized;
+  if (Result<void> prepared = scene.prepare(picture, layer); !prepared) return prepared;
+  if (picture.two_views) {
+    Picture beside = picture;
+    beside.shadows = false;
+    if (Result<void> prepared = scene.prepare(beside, other_layer); !prepared) return prepared;
+  }
+  return {};
+}
+
+/// Whether the last picture's scene may stay while this one is drawn in pieces: moving pictures would cost as much, and it has the size.
+bool Renderer::Impl::can_wait_with(const DrawnScene& wanted) const {
+  if (layer.empty() || layer.shell_draws().has_levels() || last == nullptr || !last->kept) return false;
+  const DrawnScene& kept = *last->kept;
+  const auto same_size = [](const ComposedImage& a, const ComposedImage& b) { return a.width == b.width && a.height == b.height; };
+  return kept.width == wanted.width && kept.height == wanted.height &&
+         std::equal(kept.images.begin(), kept.images.end(), wanted.images.begin(), wanted.images.end(), same_size);
+}
+
+Result<bool> Renderer::draw_piece(const Picture& picture, int width, int height, Clock& clock, std::int64_t budget_ns) {
+  Impl& impl = *impl_;
+  impl.compose_for(picture, width, height);
+  DrawnScene wanted{picture, impl.composition.images, width, height, impl.scene_version};
+  wanted.picture.overlay = nullptr;
+  if (impl.fine.kept && impl.fine.kept->same_scene(wanted)) return true;
+  if (!impl.pieces || !impl.pieces->scene.same_scene(wanted)) impl.pieces.emplace().scene = std::move(wanted);
+  const ComposedImage& first = impl.composition.images.front();
+  if (impl.fine.eyes.width() != first.width || impl.fine.eyes.height() != first.height) impl.fine.kept.reset();
+  reset_after_overlay();
+  const Result<bool> whole = impl.draw_next(*impl.pieces, clock, budget_ns);
+  if (!whole) {
+    impl.pieces.reset();
+    return whole;
+  }
+  if (!*whole) return false;
+  impl.fine.eyes.keep_aside();
+  impl.fine.kept = std::move(impl.pieces->scene);
+  impl.figures.pieces_drawn = impl.pieces->count;
+  impl.pieces.reset();
+  ++impl.figures.scenes_drawn;
+  return true;
+}
+
+Result<bool> Renderer::Impl::draw_next(Pieces& next, Clock& clock, std::int64_t budget_ns) {
+  const std::int64_t start = clock.now_ns();
+  const Picture& picture = next.scene.picture;
+  if (Result<void> prepared = prepare(fine, picture, options.samples); !prepared) return fail(prepared.error());
+  ++next.count;
+  std::int64_t now = start, took = 0;
+  do {
+    const std::int64_t before = now;
+    DrawSpan span(next.done, next.done + at_once);
+    fine.eyes.bind_scene();
+    draw_views(picture, eye_view(picture, next.scene.images[next.image], next.scene.width, next.scene.height), next.scene.width, span);
+    next.done += at_once;
+    if (!span.leaves_some()) {
+      if (!fine.eyes.put_aside(static_cast<int>(next.image))) return fail("OpenGL", "there is no graphics memory for a picture at rest");
+      ++next.image;
+      next.done = 0;
+    }
+    glFinish();
+    now = clock.now_ns();
+    took = std::max<std::int64_t>(now - before, 1);
+    at_once = next_count(at_once, took, budget_ns);
+    if (next.image == next.scene.images.size()) return true;
+  } while (now - start + took <= budget_ns);
+  return false;
+}
+
 /// Draws the model over the whole picture, or two views side by side.
-void Renderer::Impl::draw_views(const Picture& picture, const EyeView& eye, int width) {
-  scene.begin(eye);
+void Renderer::Impl::draw_views(const Picture& picture, const EyeView& eye, int width, DrawSpan& span) {
+  scene.begin(eye, span);
   if (!picture.two_views)
-    return scene.draw(picture, {layer, fields[0], picture.field[0], paint}, eye, {options.glyph_cap, options.moving_triangles});
+    return scene.draw(picture, {layer, fields[0], picture.field[0], paint}, eye, {options.glyph_cap, options.moving_triangles}, span);
   for (const Pane pane : {Pane::model, Pane::other}) {
     const bool right = (pane == Pane::model) == picture.two_views->model_on_right;
     Picture half = picture;
@@ -294,10 +401,10 @@ void Renderer::Impl::draw_views(const Picture& picture, const EyeView& eye, int 
       half.shadows = false;
     }
     const double middle = picture.two_views->border * width;
-    scene.begin_pane(eye, right ? middle + kHalfGapPixels : 0, right ? width : middle - kHalfGapPixels);
+    scene.begin_pane(eye, right ? middle + kHalfGapPixels : 0, right ? width : middle - kHalfGapPixels, span);
     const auto at = static_cast<std::size_t>(pane);
     ModelLayer& shown = pane == Pane::model ? layer : other_layer;
-    scene.draw(half, {shown, fields[at], picture.field[at], paint}, eye, {options.glyph_cap, options.moving_triangles});
+    scene.draw(half, {shown, fields[at], picture.field[at], paint}, eye, {options.glyph_cap, options.moving_triangles}, span);
   }
   glDisable(GL_STENCIL_TEST);
 }
@@ -339,21 +446,58 @@ void Renderer::Impl::read_items(int width, int height) {
   for (std::size_t i = 0; i < pixels; ++i) items.items[i] = all[i][0];
 }
 
-const ItemImage& Renderer::Impl::items_for(const stereo::Aim& aim) {
+bool Renderer::Impl::have_items(const stereo::Aim& aim) const {
+  return items.width == aim.width && items.height == aim.height && items_version == layer.shape_version() &&
+         items_clip == aim.clip_from_deck() && !items.items.empty();
+}
+
+/// Draws the next `count` elements, and reads the image if it is whole. Returns whether it is, or can't be drawn.
+bool Renderer::Impl::draw_items(const stereo::Aim& aim, std::size_t count) {
+  if (have_items(aim)) return true;
   const Eigen::Matrix4d clip = aim.clip_from_deck();
+  if (items.width != aim.width || items.height != aim.height) item_pieces.reset();
   if (!make_item_buffer(aim.width, aim.height)) {
     items = {};
-    return items;
+    item_pieces.reset();
+    return true;
   }
-  if (items_version == layer.shape_version() && items_clip == clip && !items.items.empty()) return items;
+  if (!item_pieces || item_pieces->version != layer.shape_version() || item_pieces->clip != clip)
+    item_pieces = ItemPieces{clip, layer.shape_version()};
+  items_version = 0;  // what was read before is drawn over
+  const std::size_t end = item_pieces->done + std::min(count, std::numeric_limits<std::size_t>::max() - item_pieces->done);
+  DrawSpan span(item_pieces->done, end);
   glBindFramebuffer(GL_FRAMEBUFFER, item_framebuffer.get());
   glViewport(0, 0, aim.width, aim.height);
-  scene.draw_items(layer, paint, clip);
+  scene.draw_items(layer, paint, clip, span);
+  item_pieces->done = end;
+  if (span.leaves_some()) return false;
   read_items(aim.width, aim.height);
   items_clip = clip;
-  items_version = layer.shape_version();
+  items_version = item_pieces->version;
+  item_pieces.reset();
   ++figures.item_buffers_drawn;
+  return true;
+}
+
+const ItemImage& Renderer::Impl::items_for(const stereo::Aim& aim) {
+  draw_items(aim, std::numeric_limits<std::size_t>::max());
   return items;
+}
+
+bool Renderer::draw_items_piece(const stereo::Aim& aim, Clock& clock, std::int64_t budget_ns) {
+  Impl& impl = *impl_;
+  if (impl.layer.empty()) return true;
+  const std::int64_t start = clock.now_ns();
+  std::int64_t now = start, took = 0;
+  do {
+    const std::int64_t before = now;
+    if (impl.draw_items(aim, impl.items_at_once)) return true;
+    glFinish();
+    now = clock.now_ns();
+    took = std::max<std::int64_t>(now - before, 1);
+    impl.items_at_once = next_count(impl.items_at_once, took, budget_ns);
+  } while (now - start + took <= budget_ns);
+  return false;
 }
 
 std::optional<mesh::ShellIndex> Renderer::shell_at(const stereo::Aim& aim, const Eigen::Vector2d& pixel) {

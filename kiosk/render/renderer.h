@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 
+#include "base/clock.h"
 #include "base/error.h"
 #include "ipc/model/preview.h"
 #include "kiosk/render/contact_picture.h"
@@ -45,7 +46,7 @@ class Renderer {
   Result<void> set_model(std::shared_ptr<const ModelSource> model);
   /// Takes over levels of detail: moving pictures show coarse triangles for shells that are small in them. Ignored unless they were made of
   /// the shells that are shown; dropped when the shells are others. Errors: no graphics memory.
-  Result<void> set_levels(std::shared_ptr<const MadeLevels> made);
+  Result<void> set_levels(MadeLevels made);
   /// Whether moving pictures have levels of detail, of the places where the nodes are now.
   bool levels_are_current() const;
   const ModelSource* model() const;
@@ -92,6 +93,14 @@ class Renderer {
   /// than the GPU allows, no graphics memory, a shader that the driver refuses.
   Result<DrawReport> draw(const Picture& picture, unsigned framebuffer, int width, int height);
 
+  /// Draws a piece of the scene of a picture at rest, aside, in about `budget_ns`. Returns whether the scene is whole: then `draw` shows it
+  /// at once, the same as if it had been drawn in one go. It is begun anew if the picture's scene, the model or the preview isn't that of
+  /// the last piece, or if `draw` has drawn another scene. Errors: as of `draw`.
+  Result<bool> draw_piece(const Picture& picture, int width, int height, Clock& clock, std::int64_t budget_ns);
+
+  /// Draws a piece of the item image, from which things are picked, in about `budget_ns`. Returns whether it is whole: then picking is
+  /// fast.
+  bool draw_items_piece(const stereo::Aim& aim, Clock& clock, std::int64_t budget_ns);
   /// The shell at a pixel of the picture of `aim`. The item image is drawn again only if the aim, the model or the visible parts changed. A
   /// preview isn't in it: its pixels give the model's shells.
   std::optional<mesh::ShellIndex> shell_at(const stereo::Aim& aim, const Eigen::Vector2d& pixel);
@@ -106,6 +115,7 @@ class Renderer {
     std::size_t bytes_uploaded = 0;   ///< of the model and of previews, over the renderer's life
     std::size_t item_buffers_drawn = 0;
     std::size_t scenes_drawn = 0;      ///< pictures for which the model was drawn
+    std::size_t pieces_drawn = 0;      ///< of the last scene that was drawn in pieces
     std::size_t moving_triangles = 0;  ///< of the last moving picture's image with levels of detail
     double moving_pixels = 0;          ///< how far they may be off
   };

@@ -56,25 +56,27 @@ Result<void> ScenePass::prepare(const Picture& picture, ModelLayer& model) {
   return picture.shadows ? shadows_.cast(model, picture.view) : Result<void>();
 }
 
-void ScenePass::begin(const EyeView& eye) const {
+void ScenePass::begin(const EyeView& eye, DrawSpan& span) const {
   for (const GLenum capability : {GL_SCISSOR_TEST, GL_STENCIL_TEST, GL_BLEND, GL_CULL_FACE}) glDisable(capability);
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   glDepthMask(GL_TRUE);
   glStencilMask(0xffU);
+  if (!span.takes()) return;
   glClearDepthf(1);
   glClearStencil(0);
   glClear(GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
   draw_ground(eye);
 }
 
-void ScenePass::begin_pane(const EyeView& eye, double from, double to) const {
+void ScenePass::begin_pane(const EyeView& eye, double from, double to, DrawSpan& span) const {
   const auto place = [&](const char* corner, double x, double y) {
     const Eigen::Vector2f at = (eye.image.from_picture * Eigen::Vector3d(x, y, 1)).cast<float>();
     shaders_.pane.set(corner, at.x(), at.y());
   };
+  const bool now = span.takes();
   glDisable(GL_STENCIL_TEST);
   glDepthMask(GL_TRUE);
-  glClear(GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
+  if (now) glClear(GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
   glDisable(GL_DEPTH_TEST);
   glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
   glEnable(GL_STENCIL_TEST);
@@ -86,15 +88,15 @@ void ScenePass::begin_pane(const EyeView& eye, double from, double to) const {
   place("corner_c", to, eye.image.picture_height);
   place("corner_d", from, eye.image.picture_height);
   glBindVertexArray(no_attributes_.get());
-  glDrawArrays(GL_TRIANGLES, 0, 6);
+  if (now) glDrawArrays(GL_TRIANGLES, 0, 6);
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   glStencilFunc(GL_EQUAL, 1, 0xffU);
   glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
 }
 
-void ScenePass::draw(const Picture& picture, const ViewContent& content, const EyeView& eye, const DrawCaps& caps) const {
+void ScenePass::draw(const Picture& picture, const ViewContent& content, const EyeView& eye, const DrawCaps& caps, DrawSpan& span) const {
   ModelLayer& model = content.model;
-  const Frame frame(eye, picture, model);
+  const Frame frame(eye, picture, model, span);
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LEQUAL);
   if (!model.empty()) {
@@ -113,9 +115,15 @@ void ScenePass::draw(const Picture& picture, const ViewContent& content, const E
     if (picture.selected_nodes) nodes_.draw(model, frame);
     if (picture.quality_glyphs || picture.marked) draw_glyphs(picture, model, caps.glyphs, frame);
     cut.end();
-    if (picture.shadows) shadows_.draw(model, frame);
+    if (picture.shadows && span.takes()) shadows_.draw(model, frame);
     draw_cut(model, frame);
   }
+  if (span.takes()) draw_handles(picture, model, eye);
+  glDisable(GL_DEPTH_TEST);
+  glDisable(GL_BLEND);
+}
+
+void ScenePass::draw_handles(const Picture& picture, const ModelLayer& model, const EyeView& eye) const {
   const HandleSpace space{picture.view, eye.mm_per_pixel, eye.viewer_mm, model.shown_box()};
   if (!picture.followed_edges.empty()) handle_.draw({followed_edges_piece(picture.followed_edges, space)}, eye);
   if (!picture.measures.empty()) handle_.draw({measures_piece(picture.measures, space)}, eye);
@@ -123,8 +131,6 @@ void ScenePass::draw(const Picture& picture, const ViewContent& content, const E
   if (picture.handle) handle_.draw(handle_pieces(*picture.handle, space), eye);
   if (picture.cut_handle) handle_.draw(cut_pieces(*picture.cut_handle, space), eye);
   if (picture.pen) handle_.draw(pen_pieces(*picture.pen, space), eye);
-  glDisable(GL_DEPTH_TEST);
-  glDisable(GL_BLEND);
 }
 
 void ScenePass::draw_ground(const EyeView& eye) const {
@@ -182,11 +188,11 @@ void ScenePass::draw_shells(const Picture& picture, const ViewContent& content, 
   set_shell_uniforms(shaders_.shells, picture, content, frame);
   const Eigen::Matrix4d clip_from_model = frame.clip_from_model.cast<double>();
   if (!picture.moving || !draws.has_levels())
-    return draw_opaque_and_transparent(shaders_.shells, content, [&] { draws.draw_all(clip_from_model); });
+    return draw_opaque_and_transparent(shaders_.shells, content, [&] { draws.draw_all(clip_from_model, frame.span); });
   // The same for both eyes: from between them.
-  const double pixels = picture.between_eyes_mm.z() / frame.eye.mm_per_pixel;
-  draws.choose({stereo::to_deck(picture.view, picture.between_eyes_mm), pixels, kNearestMm / picture.view.mm_per_unit}, clip_from_model,
-               moving_triangles);
+  const double pixels = picture.view.mm_per_unit * picture.between_eyes_mm.z() / frame.eye.mm_per_pixel;
+  const Vec3 away = -stereo::screen_from_deck(picture.view).row(2).head<3>().transpose();  // mm in depth, which is compressed
+  draws.choose({stereo::to_deck(picture.view, picture.between_eyes_mm), pixels, kNearestMm, away}, clip_from_model, moving_triangles);
   draw_opaque_and_transparent(shaders_.shells, content, [&] { draws.draw_chosen_shells(); });
   set_shell_uniforms(shaders_.coarse, picture, content, frame);
   draws.coarse().bind(unit::kCoarse);
@@ -194,16 +200,19 @@ void ScenePass::draw_shells(const Picture& picture, const ViewContent& content, 
   draw_opaque_and_transparent(shaders_.coarse, content, [&] { draws.draw_chosen_coarse(); });
 }
 
-void ScenePass::draw_items(const ModelLayer& model, const PaintTexture& paint, const Eigen::Matrix4d& clip_from_deck) const {
+void ScenePass::draw_items(const ModelLayer& model, const PaintTexture& paint, const Eigen::Matrix4d& clip_from_deck,
+                           DrawSpan& span) const {
   const GLuint ground[4] = {0, 0, 0, 0};
   glDisable(GL_SCISSOR_TEST);
   glDisable(GL_BLEND);
   glDisable(GL_CULL_FACE);
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   glDepthMask(GL_TRUE);
-  glClearBufferuiv(GL_COLOR, 0, ground);
-  glClearDepthf(1);
-  glClear(GL_DEPTH_BUFFER_BIT);
+  if (span.takes()) {
+    glClearBufferuiv(GL_COLOR, 0, ground);
+    glClearDepthf(1);
+    glClear(GL_DEPTH_BUFFER_BIT);
+  }
   if (model.empty()) return;
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LEQUAL);
@@ -220,12 +229,13 @@ void ScenePass::draw_items(const ModelLayer& model, const PaintTexture& paint, c
   paint.use(shaders_.items, false);
   shaders_.items.set("cut_plane", cut_plane(model));
   const CutOff cut(model);
-  model.shell_draws().draw_all(clip_from_model);
+  model.shell_draws().draw_all(clip_from_model, span);
   glDisable(GL_DEPTH_TEST);
 }
 
 void ScenePass::draw_lines(const LineSet& lines, const RowTexture& positions, const LineStyle& style, const Frame& frame) const {
-  if (lines.count == 0) return;
+  const DrawSpan::Part now = frame.span.take(lines.count);
+  if (now.count == 0) return;
   positions.bind(unit::kPositions);
   lines.texture.bind(unit::kLines);
   frame.set(shaders_.lines);
@@ -234,7 +244,7 @@ void ScenePass::draw_lines(const LineSet& lines, const RowTexture& positions, co
   shaders_.lines.set("toward_eye_mm", static_cast<float>(kLinesTowardEye * frame.eye.mm_per_pixel));
   shaders_.lines.set("ink", style.ink.x(), style.ink.y(), style.ink.z(), style.ink.w());
   glBindVertexArray(no_attributes_.get());
-  glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(lines.count * 6));
+  glDrawArrays(GL_TRIANGLES, static_cast<GLint>(now.first * 6), static_cast<GLsizei>(now.count * 6));
 }
 
 void ScenePass::draw_model_lines(const Picture& picture, const ModelLayer& model, const Frame& frame) const {
@@ -317,7 +327,7 @@ void ScenePass::draw_glyphs(const Picture& picture, ModelLayer& model, std::size
   blend_by_alpha();
   glDepthMask(GL_FALSE);
   for (const Batch& batch : batches) {
-    if (batch.instances.count == 0) continue;
+    if (batch.instances.count == 0 || !frame.span.takes(batch.instances.count)) continue;
     batch.positions.bind(unit::kPositions);
     batch.connectivity.bind(unit::kConnectivity);
     glBindVertexArray(batch.instances.array.get());

@@ -33,14 +33,15 @@ class ScenePass {
 
   /// Call once before all images of a scene. Changes framebuffer and viewport. Errors: no graphics memory.
   Result<void> prepare(const Picture& picture, ModelLayer& model);
-  /// Clears the bound framebuffer and draws the ground. The viewport must be set.
-  void begin(const EyeView& eye) const;
+  /// Clears the bound framebuffer and draws the ground, if the span begins there. The viewport must be set.
+  void begin(const EyeView& eye, DrawSpan& span) const;
   /// Limits later draws to the picture's columns from `from` to `to` (pixels), until the next call. Clears the depth there, so that
   /// earlier draws hide nothing.
-  void begin_pane(const EyeView& eye, double from, double to) const;
-  void draw(const Picture& picture, const ViewContent& content, const EyeView& eye, const DrawCaps& caps) const;
-  /// Draws shell index + 1 into a bound R32UI framebuffer; 0: no shell. Transparent parts aren't drawn.
-  void draw_items(const ModelLayer& model, const PaintTexture& paint, const Eigen::Matrix4d& clip_from_deck) const;
+  void begin_pane(const EyeView& eye, double from, double to, DrawSpan& span) const;
+  /// Draws what lies in the span. A scene that is drawn in pieces must be at rest.
+  void draw(const Picture& picture, const ViewContent& content, const EyeView& eye, const DrawCaps& caps, DrawSpan& span) const;
+  /// Draws shell index + 1 into a bound R32UI framebuffer; 0: no shell. Transparent parts aren't drawn. Clears it if the span begins there.
+  void draw_items(const ModelLayer& model, const PaintTexture& paint, const Eigen::Matrix4d& clip_from_deck, DrawSpan& span) const;
 
  private:
   struct LineStyle {
@@ -49,6 +50,7 @@ class ScenePass {
     float min_alpha = 1;  ///< of lines a few pixels long; longer ones become opaque
   };
   void draw_ground(const EyeView& eye) const;
+  void draw_handles(const Picture& picture, const ModelLayer& model, const EyeView& eye) const;
   void draw_shells(const Picture& picture, const ViewContent& content, std::size_t moving_triangles, const Frame& frame) const;
   void set_shell_uniforms(const gl::Program& program, const Picture& picture, const ViewContent& content, const Frame& frame) const;
   void draw_opaque_and_transparent(const gl::Program& program, const ViewContent& content, const std::function<void()>& draw) const;

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
+#include <type_traits>
 
 #include "base/parallel_for.h"
 
@@ -19,7 +21,9 @@ constexpr std::array<std::uint32_t, 6> kCorners{1, 2, 0, 2, 3, 0};
 constexpr std::size_t kShellsOfRun = 64;
 /// Of selected shells that a moving picture shows as they are; where more are selected, coarse triangles have their colour.
 constexpr std::size_t kMostHeld = 20'000;
-constexpr double kFinest = 1, kCoarsest = 8, kCoarser = 1.35;
+constexpr double kFinest = 1, kCoarsest = 8, kCoarser = 1.35;  ///< pixels
+/// Sides of so many pixels are seen, and so are shells with longer ones; longer than the second they are only hidden if nothing else helps.
+constexpr double kSeenSide = 4, kLongestSide = 64;
 
 void make_indices(gl::VertexArray& array, gl::Buffer& buffer) {
   array = gl::VertexArray::make();
@@ -88,36 +92,48 @@ Result<void> ShellDraws::update(const ModelTable& table, const ModelTextures& te
   std::vector<std::uint64_t> marks;
   for (std::size_t c = 0; c < table.source().chunk_count(SnapshotArray::shell_marks); ++c)
     marks.push_back(table.source().chunk_version(SnapshotArray::shell_marks, c));
-  const bool moved = changes.topology || changes.visibility || !changes.moved_chunks.empty();
-  if (moved) find_bounds(table, textures);
-  if (made_ && (moved || marks != marks_)) find_held(table);
+  const bool others = changes.topology || changes.visibility;
+  const bool remarked = made_ && (others || marks != marks_);
   marks_ = std::move(marks);
+  if (others || !changes.moved_chunks.empty()) {
+    std::vector<std::uint8_t> changed(table.node_count() / mesh::kChunkSize + 1, others ? 1 : 0);
+    for (const std::uint32_t chunk : changes.moved_chunks) {
+      changed[chunk] = 1;
+      if (made_) find_moved(table, chunk);
+    }
+    look_at_runs(table, changed);
+  }
+  if (remarked) find_selected(table);
+  if (made_ && (remarked || others || !changes.moved_chunks.empty())) find_added();
   return {};
 }
 
 void ShellDraws::drop_levels() {
   made_.reset();
-  held_.clear();
-  moved_ = false;
+  moved_by_ = added_ = cluster_moved_ = {};
+  selected_ = {};
+  farthest_ = 0;
   ordered_ = 0;
 }
 
-Result<void> ShellDraws::set_levels(std::shared_ptr<const MadeLevels> made, const ModelTable& table, const ModelTextures& textures) {
-  if (!made || made->document != table.source().document_key() || made->shell_versions != shell_versions_of(table.source())) return {};
-  const std::vector<mesh::lod::CoarseTriangle>& triangles = made->levels.triangles;
+Result<void> ShellDraws::set_levels(MadeLevels made, const ModelTable& table) {
+  if (made.document != table.source().document_key() || made.shell_versions != shell_versions_of(table.source())) return {};
+  const std::vector<mesh::lod::CoarseTriangle>& triangles = made.levels.triangles;
   if (const auto reserved = coarse_.reserve(std::max<std::size_t>(triangles.size(), 1), "coarse triangles"); !reserved)
     return fail(reserved.error());
-  std::vector<std::array<std::uint32_t, 4>> rows;
-  rows.reserve(triangles.size());
-  for (const mesh::lod::CoarseTriangle& t : triangles) rows.push_back({t.node[0].value, t.node[1].value, t.node[2].value, t.shell.value});
-  coarse_.upload(std::as_bytes(std::span(rows)));
+  static_assert(sizeof(mesh::lod::CoarseTriangle) == 4 * sizeof(std::uint32_t) && std::is_standard_layout_v<mesh::lod::CoarseTriangle>);
+  coarse_.upload(std::as_bytes(std::span(triangles)));  // three nodes and the shell
+  made.levels.triangles = {};
   made_ = std::move(made);
   if (Result<void> done = upload_order(made_->levels.shells); !done) return done;
   runs_.clear();
   for (std::size_t c = 0; c < made_->levels.shell_clusters; ++c)
     runs_.push_back({made_->levels.clusters[c].first, made_->levels.clusters[c].count, {}, true});
-  find_bounds(table, textures);
-  find_held(table);
+  moved_by_.clear();
+  for (std::size_t chunk = 0; chunk * mesh::kChunkSize < table.node_count(); ++chunk) find_moved(table, chunk);
+  look_at_runs(table, std::vector<std::uint8_t>(table.node_count() / mesh::kChunkSize + 1, 1));
+  find_selected(table);
+  find_added();
   return {};
 }
 
@@ -137,67 +153,93 @@ Result<void> ShellDraws::upload_order(const std::vector<ShellIndex>& shells) {
   return {};
 }
 
-void ShellDraws::find_bounds(const ModelTable& table, const ModelTextures& textures) {
-  const std::vector<ShellIndex>* order = made_ ? &made_->levels.shells : nullptr;
-  const mesh::Vec3 origin = textures.origin();
+/// How far the nodes of a chunk have moved since the levels were made.
+void ShellDraws::find_moved(const ModelTable& table, std::size_t chunk) {
+  const std::size_t begin = chunk * mesh::kChunkSize, end = std::min(begin + mesh::kChunkSize, table.node_count());
+  const auto way = [&](std::size_t n) {
+    const Eigen::Vector3f at = (table.position(n) - made_->origin).cast<float>(), before = made_->places[n];
+    if ((at.array() == before.array()).all()) return 0.0F;
+    if (at.allFinite() && before.allFinite()) return std::max((at - before).norm(), std::numeric_limits<float>::min());
+    return at.allFinite() || before.allFinite() ? std::numeric_limits<float>::infinity() : 0.0F;
+  };
+  for (std::size_t n = begin; n < end && n < made_->places.size(); ++n) {
+    const float moved = way(n);
+    if (moved > 0 && moved_by_.empty()) moved_by_.resize(table.node_count());
+    if (!moved_by_.empty()) moved_by_[n] = moved;
+  }
+}
+
+/// Finds how far the shells of each run have moved, and the bounds of those with nodes in a chunk that has changed.
+void ShellDraws::look_at_runs(const ModelTable& table, const std::vector<std::uint8_t>& changed_chunks) {
+  cluster_moved_.resize(runs_.size());
   parallel_for(runs_.size(), 256, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t r = begin; r < end; ++r) {
-      Run& run = runs_[r];
-      stereo::Box box;
-      run.shown = false;
-      for (std::uint32_t i = run.first; i < run.first + run.count; ++i) {
-        const std::size_t s = order != nullptr ? (*order)[i].value : i;
-        mesh::ShellNodes nodes;
-        if (!table.shell(s, nodes) || !table.shell_visible(s)) continue;
-        run.shown = true;
-        for (const mesh::NodeIndex node : nodes.node)
-          if (const mesh::Vec3 at = table.position(node.value); finite(at)) box.add(mesh::Vec3(at - origin));
-      }
-      if (box.empty()) {
-        run.bounds = {};
-        run.shown = false;
-      } else {
-        run.bounds = {(box.low + box.high) / 2, (box.high - box.low).norm() / 2};
-      }
-    }
+    for (std::size_t r = begin; r < end; ++r) look_at_run(table, r, changed_chunks);
   });
 }
 
-/// What stands for shells that moved since the levels were made, or for selected ones, isn't drawn.
-void ShellDraws::find_held(const ModelTable& table) {
-  std::vector<std::uint8_t> moved(table.node_count());
-  parallel_for(moved.size(), 16384, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) {
-      const Eigen::Vector3f at = table.position(n).cast<float>();
-      moved[n] = (at.array() == made_->places[n].array()).all() || !at.allFinite() ? 0 : 1;
+void ShellDraws::look_at_run(const ModelTable& table, std::size_t index, const std::vector<std::uint8_t>& changed_chunks) {
+  Run& run = runs_[index];
+  const auto shell_of = [&](std::uint32_t i) -> std::size_t { return made_ ? made_->levels.shells[i].value : i; };
+  bool changed = false;
+  float moved = 0;
+  mesh::ShellNodes nodes;
+  for (std::uint32_t i = run.first; i < run.first + run.count; ++i) {
+    if (!table.shell(shell_of(i), nodes)) continue;
+    for (const mesh::NodeIndex node : nodes.node) {
+      changed = changed || changed_chunks[node.value / mesh::kChunkSize] != 0;
+      if (!moved_by_.empty()) moved = std::max(moved, moved_by_[node.value]);
     }
-  });
-  moved_ = std::find(moved.begin(), moved.end(), 1) != moved.end();
-  std::vector<std::uint8_t> held(table.shell_count());
-  if (moved_)
-    parallel_for(held.size(), 16384, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t s = begin; s < end; ++s) {
-        mesh::ShellNodes nodes;
-        if (!table.shell(s, nodes)) continue;
-        for (const mesh::NodeIndex node : nodes.node) held[s] |= moved[node.value];
-      }
-    });
-  std::size_t selected = 0;
-  for (std::size_t s = 0; s < held.size(); ++s) selected += table.shell_selected(s) ? 1 : 0;
-  if (selected <= kMostHeld)
-    for (std::size_t s = 0; s < held.size(); ++s)
-      if (table.shell_selected(s)) held[s] = 1;
-  held_ = mesh::lod::groups_over(made_->levels, held);
+  }
+  cluster_moved_[index] = moved;
+  if (!changed && run.bounds.radius >= 0) return;
+  stereo::Box box;
+  run.shown = false;
+  for (std::uint32_t i = run.first; i < run.first + run.count; ++i) {
+    if (!table.shell(shell_of(i), nodes) || !table.shell_visible(shell_of(i))) continue;
+    run.shown = true;
+    for (const mesh::NodeIndex node : nodes.node)
+      if (const mesh::Vec3 at = table.position(node.value); finite(at)) box.add(mesh::Vec3(at - origin_));
+  }
+  run.shown = run.shown && !box.empty();
+  run.bounds = run.shown ? mesh::lod::Sphere{(box.low + box.high) / 2, (box.high - box.low).norm() / 2} : mesh::lod::Sphere{};
 }
 
-void ShellDraws::draw_all(const Eigen::Matrix4d& clip_from_model) const {
+/// Selected shells are seen as they are, unless there are too many.
+void ShellDraws::find_selected(const ModelTable& table) {
+  std::vector<std::uint32_t> selected(made_->levels.shell_clusters);
+  parallel_for(selected.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) {
+      const mesh::lod::Cluster& cluster = made_->levels.clusters[c];
+      for (std::uint32_t i = cluster.first; i < cluster.first + cluster.count; ++i)
+        selected[c] += table.shell_selected(made_->levels.shells[i].value) ? 1 : 0;
+    }
+  });
+  const std::size_t all = std::accumulate(selected.begin(), selected.end(), std::size_t{0});
+  selected_.assign(selected.size(), 0);
+  if (all <= kMostHeld)
+    for (std::size_t c = 0; c < selected.size(); ++c) selected_[c] = selected[c] > 0 ? 1 : 0;
+}
+
+void ShellDraws::find_added() {
+  std::vector<float> by_cluster = cluster_moved_;
+  by_cluster.resize(made_->levels.shell_clusters);
+  farthest_ = 0;
+  for (const float moved : by_cluster)
+    if (std::isfinite(moved)) farthest_ = std::max(farthest_, moved);
+  for (std::size_t c = 0; c < by_cluster.size(); ++c)
+    if (selected_[c] != 0) by_cluster[c] = std::numeric_limits<float>::infinity();
+  added_ = mesh::lod::added_errors(made_->levels, by_cluster);
+}
+
+void ShellDraws::draw_all(const Eigen::Matrix4d& clip_from_model, DrawSpan& span) const {
   glBindVertexArray(all_array_.get());
   const ViewVolume volume(clip_from_model);
   std::size_t first = 0, last = 0;  // neighbours are drawn in one call
   const auto flush = [&] {
-    if (last > first)
-      glDrawElements(GL_TRIANGLES, static_cast<GLsizei>((last - first) * kCorners.size()), GL_UNSIGNED_INT,
-                     reinterpret_cast<const void*>(first * kCorners.size() * sizeof(std::uint32_t)));
+    const DrawSpan::Part now = span.take(last - first);
+    if (now.count > 0)
+      glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(now.count * kCorners.size()), GL_UNSIGNED_INT,
+                     reinterpret_cast<const void*>((first + now.first) * kCorners.size() * sizeof(std::uint32_t)));
   };
   for (const Run& run : runs_) {
     if (!run.shown || !volume.may_hold(run.bounds)) continue;
@@ -218,15 +260,20 @@ void ShellDraws::choose(const mesh::lod::Viewpoint& from, const Eigen::Matrix4d&
     if (c < levels.shell_clusters) return runs_[c].shown && volume.may_hold(runs_[c].bounds);
     mesh::lod::Sphere bounds = levels.clusters[c].bounds;
     bounds.centre -= origin_;
+    bounds.radius += farthest_;
     return volume.may_hold(bounds);
   };
-  for (double pixels = kFinest;; pixels *= kCoarser) {
+  for (mesh::lod::Limits limits{kFinest, kSeenSide};;) {
     clusters_.clear();
-    mesh::lod::choose(levels, held_, from, pixels, clusters_);
+    mesh::lod::choose(levels, added_, from, limits, clusters_);
     std::erase_if(clusters_, [&](std::uint32_t c) { return !is_seen(c); });
     chosen_triangles_ = mesh::lod::triangles_of(levels, clusters_);
-    chosen_pixels_ = pixels;
-    if (chosen_triangles_ <= triangles || pixels >= kCoarsest) break;
+    chosen_pixels_ = limits.error_pixels;
+    if (chosen_triangles_ <= triangles || limits.error_pixels >= kCoarsest) break;
+    if (limits.side_pixels < kLongestSide)
+      limits.side_pixels *= kCoarser;
+    else
+      limits = {limits.error_pixels * kCoarser};
   }
   shell_list_.clear();
   coarse_list_.clear();

@@ -2,9 +2,10 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
+#include <optional>
 #include <vector>
 
+#include "kiosk/render/draw_span.h"
 #include "kiosk/render/model_textures.h"
 #include "mesh/lod/choose.h"
 #include "mesh/lod/levels.h"
@@ -14,7 +15,8 @@ namespace prismesh::kiosk::render {
 /// Levels of detail with the places of the nodes that they were made of.
 struct MadeLevels {
   mesh::lod::Levels levels;
-  std::vector<Eigen::Vector3f> places;        ///< by node; not finite: not drawn
+  mesh::Vec3 origin = mesh::Vec3::Zero();
+  std::vector<Eigen::Vector3f> places;        ///< by node, from `origin`; not finite: not drawn
   std::uint64_t document = 0;                 ///< ModelSource::document_key
   std::vector<std::uint64_t> shell_versions;  ///< of the chunks of ModelSource's shell_nodes and shell_parts
 };
@@ -28,17 +30,17 @@ class ShellDraws {
 
   /// Follows the model. Levels of other shells are dropped. Errors: no graphics memory.
   Result<void> update(const ModelTable& table, const ModelTextures& textures, const ModelChanges& changes);
-  /// Takes levels over; ignored if they were made of other shells. Null: none. Errors: no graphics memory.
-  Result<void> set_levels(std::shared_ptr<const MadeLevels> made, const ModelTable& table, const ModelTextures& textures);
-  bool has_levels() const { return made_ != nullptr; }
+  /// Takes levels over; ignored if they were made of other shells. Errors: no graphics memory.
+  Result<void> set_levels(MadeLevels made, const ModelTable& table);
+  bool has_levels() const { return made_.has_value(); }
   /// Whether nodes have moved since the levels were made.
-  bool is_out_of_date() const { return moved_; }
+  bool is_out_of_date() const { return !moved_by_.empty(); }
 
-  /// Draws all shells that may be seen, four vertices each: gl_VertexID is four times the shell, plus the corner. The program, the textures
-  /// and their uniforms must be set.
-  void draw_all(const Eigen::Matrix4d& clip_from_model) const;
-  /// Chooses what is drawn for a viewpoint (deck's coordinates): the finest that has at most `triangles`, off by 1 to 8 pixels.
-  /// Precondition: has_levels().
+  /// Draws those in the span of all shells that may be seen, four vertices each: gl_VertexID is four times the shell, plus the corner. The
+  /// program, the textures and their uniforms must be set.
+  void draw_all(const Eigen::Matrix4d& clip_from_model, DrawSpan& span) const;
+  /// Chooses what is drawn for a viewpoint (deck's coordinates): the finest that has at most `triangles`. Shells whose sides are seen are
+  /// drawn as they are as long as `triangles` allow it; then triangles are off by 1 to 8 pixels. Precondition: has_levels().
   void choose(const mesh::lod::Viewpoint& from, const Eigen::Matrix4d& clip_from_model, std::size_t triangles);
   /// Draws the chosen shells as draw_all does.
   void draw_chosen_shells() const;
@@ -56,20 +58,26 @@ class ShellDraws {
     bool shown = true;
   };
   Result<void> upload_order(const std::vector<mesh::ShellIndex>& shells);
-  void find_bounds(const ModelTable& table, const ModelTextures& textures);
-  void find_held(const ModelTable& table);
+  void find_moved(const ModelTable& table, std::size_t chunk);
+  void look_at_runs(const ModelTable& table, const std::vector<std::uint8_t>& changed_chunks);
+  void look_at_run(const ModelTable& table, std::size_t run, const std::vector<std::uint8_t>& changed_chunks);
+  void find_selected(const ModelTable& table);
+  void find_added();
   void drop_levels();
 
   std::size_t shells_ = 0;
   gl::VertexArray all_array_, shell_array_, coarse_array_;
   gl::Buffer all_indices_, shell_indices_, coarse_indices_;
-  std::size_t ordered_ = 0;  ///< shells in all_indices_
-  std::vector<Run> runs_;    ///< with levels: their clusters of shells
-  std::shared_ptr<const MadeLevels> made_;
+  std::size_t ordered_ = 0;         ///< shells in all_indices_
+  std::vector<Run> runs_;           ///< with levels: their clusters of shells
+  std::optional<MadeLevels> made_;  ///< without triangles: they are in coarse_
   RowTexture coarse_{kFourIndices};
-  std::vector<std::uint8_t> held_;    ///< by group of the levels
-  std::vector<std::uint64_t> marks_;  ///< versions of the shells' marks, of which selection held_ is
-  bool moved_ = false;
+  std::vector<float> moved_by_;         ///< by node, since the levels were made; empty: none has moved
+  std::vector<float> cluster_moved_;    ///< by cluster of shells: the longest way of one of their nodes
+  std::vector<std::uint8_t> selected_;  ///< by cluster of shells: some must be seen as they are
+  std::vector<float> added_;            ///< by group of the levels
+  float farthest_ = 0;                  ///< of moved_by_
+  std::vector<std::uint64_t> marks_;    ///< versions of the shells' marks, of which selected_ is
   mesh::Vec3 origin_ = mesh::Vec3::Zero();
   std::vector<std::uint32_t> clusters_, shell_list_, coarse_list_;
   std::size_t chosen_triangles_ = 0;

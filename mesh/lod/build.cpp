@@ -208,6 +208,20 @@ class Builder {
     return made;
   }
 
+  double mean_side(const Cluster& cluster) const {
+    double sum = 0;
+    std::size_t sides = 0;
+    for (std::uint32_t i = cluster.first; i < cluster.first + cluster.count; ++i) {
+      const ShellNodes& nodes = model_.shell(levels_.shells[i]);
+      for (std::size_t k = 0; k < 4; ++k)
+        if (nodes.node[k] != nodes.node[(k + 1) % 4]) {
+          sum += (model_.position(nodes.node[k]) - model_.position(nodes.node[(k + 1) % 4])).norm();
+          ++sides;
+        }
+    }
+    return sides > 0 ? sum / static_cast<double>(sides) : 0;
+  }
+
   /// Takes over what a group was simplified to. Its sphere and error hold those of the groups inside it.
   void take(const std::vector<std::uint32_t>& inside, const Made& made, std::vector<std::uint32_t>& next) {
     Group group;
@@ -217,7 +231,11 @@ class Builder {
       Cluster& cluster = levels_.clusters[c];
       cluster.replaced_by = static_cast<std::uint32_t>(levels_.groups.size());
       spheres.push_back(cluster.bounds);
-      if (cluster.made_by == kNoGroup) continue;
+      if (cluster.made_by == kNoGroup) {
+        group.side = std::max(group.side, mean_side(cluster));
+        continue;
+      }
+      group.side = std::max(group.side, levels_.groups[cluster.made_by].side);
       spheres.push_back(levels_.groups[cluster.made_by].sphere);
       before = std::max(before, levels_.groups[cluster.made_by].error);
     }

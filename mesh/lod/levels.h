@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "base/error.h"
@@ -30,6 +31,7 @@ struct Sphere {
 struct Group {
   Sphere sphere;     ///< around all that its clusters stand for; inside that of the group that replaces them
   double error = 0;  ///< how far its triangles may be from the shells that they stand for; no smaller than that of the groups inside it
+  double side = 0;   ///< the longest mean side of a cluster of shells that it stands for
   std::uint32_t first_cluster = 0;  ///< the clusters that it made: Levels::clusters [first_cluster, first_cluster + clusters)
   std::uint32_t clusters = 0;
 };
@@ -56,8 +58,8 @@ struct Levels {
 /// cancelled.
 Result<Levels> build_levels(const Model& model, const Progress& progress = {});
 
-/// By group: 1 if it stands for one of these shells (by ShellIndex: not 0). So shells that moved since, or must be seen as they are, can be
-/// kept out of the coarse ones. Costs a look at each shell.
-std::vector<std::uint8_t> groups_over(const Levels& levels, const std::vector<std::uint8_t>& shells);
+/// By group: by how much nodes of the shells that it stands for have moved at most since the levels were made. `by_cluster`: the same for
+/// each of the clusters of shells; infinite: its shells must be seen as they are. Costs a look at each cluster.
+std::vector<float> added_errors(const Levels& levels, std::span<const float> by_cluster);
 
 }  // namespace prismesh::mesh::lod

@@ -25,7 +25,7 @@ void choose(benchmark::State& state) {
   std::vector<std::uint32_t> clusters;
   for (auto _ : state) {
     clusters.clear();
-    mesh::lod::choose(levels, {}, view, static_cast<double>(state.range(0)) / 10, clusters);
+    mesh::lod::choose(levels, {}, view, {static_cast<double>(state.range(0)) / 10}, clusters);
   }
   state.counters["triangles"] = static_cast<double>(mesh::lod::triangles_of(levels, clusters));
   state.counters["clusters"] = static_cast<double>(clusters.size());

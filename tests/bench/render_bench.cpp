@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <ctime>
 #include <fstream>
 #include <memory>
@@ -13,10 +15,12 @@
 #include <benchmark/benchmark.h>
 #include <unistd.h>
 
+#include "base/clock.h"
 #include "kiosk/display/headless.h"
 #include "kiosk/levels_worker.h"
 #include "kiosk/render/make_levels.h"
 #include "kiosk/render/offscreen.h"
+#include "kiosk/render/picture_file.h"
 #include "kiosk/render/renderer.h"
 #include "tests/kiosk/test_source.h"
 
@@ -85,7 +89,7 @@ BENCHMARK(turning)
 /// The same with levels of detail, for both eyes at 1920 x 1080. Argument: zoom.
 void turning_with_levels(benchmark::State& state) {
   Stage stage(0, "side-by-side", static_cast<double>(state.range(0)));
-  static const auto levels = std::make_shared<const render::MadeLevels>(render::make_levels(*million(0)).value());
+  static const auto levels = render::make_levels(*million(0)).value();
   (void)stage.renderer->set_levels(levels);
   for (auto _ : state) {
     stage.picture.view = stereo::orbit(stage.picture.view, 0.001, 0);
@@ -105,6 +109,77 @@ BENCHMARK(turning_with_levels)
     ->MeasureProcessCPUTime()
     ->UseRealTime();
 
+/// A film of the camera on its way through the levels: for each step of turning and zooming the picture at rest, the moving one, and how
+/// far they differ (mid-grey: not at all, white: by 64 of 255). Written as PNG into the folder that PRISMESH_FILM names. Counters: the
+/// largest shares of pixels whose brightness differs by more than 8 and 24 of 255.
+void film(benchmark::State& state) {
+  const char* const folder = std::getenv("PRISMESH_FILM");
+  Stage stage(0, "mono", 1);
+  (void)stage.renderer->set_levels(render::make_levels(*million(0)).value());
+  const stereo::View begin = stage.picture.view;
+  double more_than_8 = 0, more_than_24 = 0;
+  for (auto _ : state)
+    for (int k = 0; k < 16; ++k) {
+      stage.picture.view = stereo::zoom(stereo::orbit(begin, 0.11 * k, 0.02 * k), std::pow(1.35, k), {0, 0});
+      std::vector<render::Image> images;
+      for (const bool moving : {true, false}) {  // the other way round the picture at rest would be shown again
+        stage.picture.moving = moving;
+        (void)stage.renderer->draw(stage.picture, stage.target.framebuffer(), kWidth, kHeight);
+        images.push_back(stage.target.read());
+      }
+      images.push_back(images[0]);
+      std::size_t over_8 = 0, over_24 = 0;
+      for (std::size_t i = 0; i < images[0].rgb.size(); i += 3) {
+        int apart = 0;
+        for (std::size_t c = 0; c < 3; ++c) apart += images[0].rgb[i + c] - images[1].rgb[i + c];
+        apart /= 3;
+        over_8 += std::abs(apart) > 8 ? 1 : 0;
+        over_24 += std::abs(apart) > 24 ? 1 : 0;
+        for (std::size_t c = 0; c < 3; ++c) images[2].rgb[i + c] = static_cast<std::uint8_t>(std::clamp(128 + 2 * apart, 0, 255));
+      }
+      const double pixels = static_cast<double>(images[0].rgb.size()) / 3;
+      more_than_8 = std::max(more_than_8, static_cast<double>(over_8) / pixels);
+      more_than_24 = std::max(more_than_24, static_cast<double>(over_24) / pixels);
+      if (folder == nullptr) continue;
+      std::printf("%02d: %.1f%% of the pixels by more than 8, %.1f%% by more than 24; %zu triangles, off by %.1f\n", k,
+                  100 * static_cast<double>(over_8) / pixels, 100 * static_cast<double>(over_24) / pixels,
+                  stage.renderer->figures().moving_triangles, stage.renderer->figures().moving_pixels);
+      const char* const names[] = {"moving", "rest", "apart"};
+      for (std::size_t n = 0; n < 3; ++n)
+        (void)render::write_png(std::string(folder) + "/" + (k < 10 ? "0" : "") + std::to_string(k) + "_" + names[n] + ".png", images[n]);
+    }
+  state.counters["over_8"] = more_than_8;
+  state.counters["over_24"] = more_than_24;
+}
+BENCHMARK(film)->Iterations(1)->Unit(benchmark::kMillisecond);
+
+/// A picture at rest of the million for both eyes, after one from another side. Argument: 0 in one go, else in pieces of so many
+/// milliseconds. `longest_ms` is the longest wall time of a piece, and so between two looks at the input.
+void at_rest(benchmark::State& state) {
+  Stage stage(0, "side-by-side", 1);
+  static const auto levels = render::make_levels(*million(0)).value();
+  (void)stage.renderer->set_levels(levels);
+  stage.picture.moving = false;
+  MonotonicClock clock;
+  double longest = 0;
+  for (auto _ : state) {
+    stage.picture.view = stereo::orbit(stage.picture.view, 0.1, 0);
+    for (bool whole = state.range(0) == 0; !whole;) {
+      const std::int64_t before = clock.now_ns();
+      whole = stage.renderer->draw_piece(stage.picture, kWidth, kHeight, clock, state.range(0) * 1'000'000).value();
+      longest = std::max(longest, static_cast<double>(clock.now_ns() - before) * 1e-6);
+    }
+    const std::int64_t before = clock.now_ns();
+    benchmark::DoNotOptimize(stage.renderer->draw(stage.picture, stage.target.framebuffer(), kWidth, kHeight));
+    glFinish();
+    longest = std::max(longest, static_cast<double>(clock.now_ns() - before) * 1e-6);
+  }
+  state.counters["longest_ms"] = longest;
+  state.counters["pieces"] = static_cast<double>(stage.renderer->figures().pieces_drawn);
+  state.SetLabel(reinterpret_cast<const char*>(glGetString(GL_RENDERER)));
+}
+BENCHMARK(at_rest)->ArgName("budget_ms")->Arg(0)->Arg(50)->Arg(25)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+
 std::size_t resident_bytes() {
   std::ifstream in("/proc/self/statm");
   std::size_t pages = 0;
@@ -121,8 +196,7 @@ void path(benchmark::State& state) {
   const render::Offscreen target = std::move(*render::Offscreen::create(kPathWidth, kPathHeight));
   const auto source = std::make_shared<test::TestSource>(sheet_of(static_cast<std::uint32_t>(state.range(0))));
   (void)renderer->set_model(source);
-  if (source->shell_nodes.size() > kiosk::LevelsWorker::kFewestShells)
-    (void)renderer->set_levels(std::make_shared<const render::MadeLevels>(render::make_levels(*source).value()));
+  if (source->shell_nodes.size() > kiosk::LevelsWorker::kFewestShells) (void)renderer->set_levels(render::make_levels(*source).value());
   render::Picture picture;
   picture.profile = *stereo::find_profile("side-by-side");
   picture.view.rotation = *stereo::named_rotation("iso");
@@ -170,6 +244,46 @@ BENCHMARK(path)
     ->Unit(benchmark::kMillisecond)
     ->MeasureProcessCPUTime()
     ->UseRealTime();
+
+/// From a snapshot in which an edit has moved 10,000 nodes of a million shells with levels of detail to the moving picture that shows them.
+/// `taking_ms`: wall time until the renderer has the snapshot; `picture_ms`: of the picture for both eyes. Argument: 0: neighbours, else
+/// every so many nodes.
+void nodes_moved(benchmark::State& state) {
+  Stage stage(0, "side-by-side", 1);
+  static const auto levels = render::make_levels(*million(0)).value();
+  const std::shared_ptr<test::TestSource> source = million(0);
+  (void)stage.renderer->set_levels(levels);
+  const std::size_t step = std::max<std::size_t>(static_cast<std::size_t>(state.range(0)), 1);
+  MonotonicClock clock;
+  double taking = 0, drawing = 0;
+  std::size_t turn = 0;
+  for (auto _ : state) {
+    state.PauseTiming();
+    std::vector<std::uint8_t> touched(source->positions.size() / mesh::kChunkSize + 1);
+    const double up = ++turn % 2 == 0 ? -3 : 3;
+    for (std::size_t k = 0; k < 10'000; ++k) {
+      const std::size_t node = (step == 1 ? 400'000 : 0) + k * step;
+      source->positions[node].z() += up;
+      touched[node / mesh::kChunkSize] = 1;
+    }
+    for (std::size_t c = 0; c < touched.size(); ++c)
+      if (touched[c] != 0) source->touch(ipc::SnapshotArray::positions, c);
+    const auto next = std::make_shared<test::TestSource>(*source);
+    state.ResumeTiming();
+    const std::int64_t start = clock.now_ns();
+    benchmark::DoNotOptimize(stage.renderer->set_model(next));
+    const std::int64_t taken = clock.now_ns();
+    benchmark::DoNotOptimize(stage.renderer->draw(stage.picture, stage.target.framebuffer(), kWidth, kHeight));
+    glFinish();
+    taking += static_cast<double>(taken - start) * 1e-6;
+    drawing += static_cast<double>(clock.now_ns() - taken) * 1e-6;
+  }
+  state.counters["taking_ms"] = benchmark::Counter(taking, benchmark::Counter::kAvgIterations);
+  state.counters["picture_ms"] = benchmark::Counter(drawing, benchmark::Counter::kAvgIterations);
+  state.counters["triangles"] = static_cast<double>(stage.renderer->figures().moving_triangles);
+  state.SetLabel(reinterpret_cast<const char*>(glGetString(GL_RENDERER)));
+}
+BENCHMARK(nodes_moved)->ArgName("step")->Arg(0)->Arg(100)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 
 /// From a snapshot in which an edit has changed the quality of 10,000 shells to the picture with their glyphs, with the view unchanged.
 /// `taking_s` is the processor time until the renderer has the snapshot, the rest is drawing. Arguments: percentage of shells that warn;

@@ -31,6 +31,16 @@ TEST(PictureWatch, is_alive_at_rest_once_a_period) {
   EXPECT_EQ(told.watch.next_ns(), 20 * kSecond);
 }
 
+TEST(PictureWatch, is_alive_while_pieces_of_a_picture_are_drawn) {
+  Told told;
+  for (std::int64_t now = 100 * kSecond; now < 130 * kSecond; now += kSecond) {
+    told.watch.draws_piece();
+    told.watch.turn(now, true);
+  }
+  EXPECT_EQ(told.alive, 30);
+  EXPECT_EQ(told.ready, 0) << "no picture has appeared";
+}
+
 TEST(PictureWatch, is_not_alive_while_a_picture_does_not_appear) {
   Told told;
   std::int64_t now = 100 * kSecond;

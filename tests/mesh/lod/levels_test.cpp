@@ -131,7 +131,7 @@ void from_everywhere(const Model& model, const Levels& levels, const Check& chec
     const double reach = std::pow(10, 1 + 3 * std::abs(place(random)));
     const Viewpoint view{target + reach * Vec3(place(random), place(random), place(random)), 1000, 1};
     clusters.clear();
-    choose(levels, {}, view, 1 + k % 4, clusters);
+    choose(levels, {}, view, {1.0 + k % 4}, clusters);
     check(clusters, view);
   }
 }
@@ -145,7 +145,7 @@ TEST(Levels, have_each_shell_once_as_it_is) {
   EXPECT_EQ(shells.size(), live_shells(model));
   const Viewpoint near{{300, 300, 1}, 1e9, 1e-3};
   std::vector<std::uint32_t> clusters;
-  choose(levels, {}, near, 0, clusters);
+  choose(levels, {}, near, {0}, clusters);
   std::size_t shown = 0;
   for (const std::uint32_t c : clusters) shown += c < levels.shell_clusters ? levels.clusters[c].count : 0;
   EXPECT_GE(triangles_of(levels, clusters), shown);
@@ -232,7 +232,7 @@ TEST(Levels, become_few_even_of_many_small_parts) {
   const Levels levels = build_levels(model).value();
   const Viewpoint far{{300, 300, 300'000}, 1000, 1};
   std::vector<std::uint32_t> clusters;
-  choose(levels, {}, far, 1, clusters);
+  choose(levels, {}, far, {1}, clusters);
   EXPECT_LT(triangles_of(levels, clusters), model.shell_count() / 4);
   EXPECT_GT(triangles_of(levels, clusters), 0u) << "something stands for them";
 }
@@ -246,22 +246,93 @@ TEST(Levels, are_the_same_each_time) {
   EXPECT_EQ(a.groups.size(), b.groups.size());
 }
 
+/// By cluster of shells: infinite where one of these is.
+std::vector<float> seen_as_they_are(const Levels& levels, const std::set<std::uint32_t>& shells) {
+  std::vector<float> by_cluster(levels.shell_clusters);
+  for (std::size_t c = 0; c < levels.shell_clusters; ++c)
+    for (std::uint32_t i = 0; i < levels.clusters[c].count; ++i)
+      if (shells.count(levels.shells[levels.clusters[c].first + i].value) > 0) by_cluster[c] = std::numeric_limits<float>::infinity();
+  return by_cluster;
+}
+
 TEST(Levels, show_shells_that_are_held_as_they_are) {
   const Model model = torus();
   const Levels levels = build_levels(model).value();
   const Viewpoint far{{0, 0, 100'000}, 1000, 1};
   std::vector<std::uint32_t> before, after;
-  choose(levels, {}, far, 2, before);
+  choose(levels, {}, far, {2}, before);
   EXPECT_TRUE(std::all_of(before.begin(), before.end(), [&](std::uint32_t c) { return c >= levels.shell_clusters; }));
-  std::vector<std::uint8_t> held(model.shell_count());
-  held[5000] = held[12'345] = 1;
-  choose(levels, groups_over(levels, held), far, 2, after);
+  choose(levels, added_errors(levels, seen_as_they_are(levels, {5000, 12'345})), far, {2}, after);
   std::set<std::uint32_t> shown;
   for (const std::uint32_t c : after)
     if (c < levels.shell_clusters)
       for (std::uint32_t i = 0; i < levels.clusters[c].count; ++i) shown.insert(levels.shells[levels.clusters[c].first + i].value);
   EXPECT_TRUE(shown.count(5000) && shown.count(12'345));
   EXPECT_LT(triangles_of(levels, after), model.shell_count()) << "the rest stays coarse";
+}
+
+TEST(Levels, show_shells_whose_sides_are_seen_as_they_are) {
+  Sheets sheets;  // flat, so that no error keeps shells apart
+  sheets.grid(
+      100, 100, false, false, [](double u, double v) { return Vec3(100 * u, 100 * v, 0); }, [](auto, auto) { return 0U; });
+  const Model model = sheets.model();
+  const Levels levels = build_levels(model).value();
+  const auto shells_at = [&](double distance) {
+    std::vector<std::uint32_t> clusters;
+    choose(levels, {}, {{50, 50, distance}, 1000, 1}, {1, 4}, clusters);
+    std::size_t shells = 0;
+    for (const std::uint32_t c : clusters) shells += c < levels.shell_clusters ? levels.clusters[c].count : 0;
+    return shells;
+  };
+  EXPECT_EQ(shells_at(150), model.shell_count()) << "more than 5 pixels at the nearest corner, 4 at a group's farthest";
+  EXPECT_EQ(shells_at(1000), 0u) << "1 pixel";
+}
+
+/// After edits here and there, one after another, whatever is chosen is closed and as near to the moved shells as is said.
+TEST(Levels, stay_right_after_edits_in_random_order) {
+  Model model = torus();
+  const Model made_of = model;
+  const Levels levels = build_levels(model).value();
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> place(-1, 1);
+  for (int edit = 0; edit < 8; ++edit) {
+    const Vec3 centre = model.position(NodeIndex(random() % model.node_count()));
+    const Vec3 by = std::pow(10, 1 + place(random)) * Vec3(place(random), place(random), place(random));
+    for (std::size_t n = 0; n < model.node_count(); ++n)
+      if ((model.position(NodeIndex(n)) - centre).norm() < 60) model.positions.set(n, model.position(NodeIndex(n)) + by);
+    std::vector<float> by_cluster(levels.shell_clusters);
+    for (std::size_t c = 0; c < levels.shell_clusters; ++c)
+      for (std::uint32_t i = 0; i < levels.clusters[c].count; ++i)
+        for (const NodeIndex node : model.shell(levels.shells[levels.clusters[c].first + i]).node)
+          by_cluster[c] = std::max(by_cluster[c], static_cast<float>((model.position(node) - made_of.position(node)).norm()));
+    const std::vector<float> moved = added_errors(levels, by_cluster);
+    for (const double distance : {900.0, 4000.0, 20'000.0}) {
+      const Viewpoint view{distance * Vec3(place(random), place(random), 1), 1000, 1};
+      std::vector<std::uint32_t> clusters;
+      choose(levels, moved, view, {2}, clusters);
+      const auto triangles = triangles_of_clusters(model, levels, clusters);
+      std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
+      for (const CoarseTriangle& t : triangles)
+        for (std::size_t k = 0; k < 3; ++k) ++edges[std::minmax(t.node[k].value, t.node[(k + 1) % 3].value)];
+      for (const auto& [edge, uses] : edges) ASSERT_EQ(uses, 2) << "edit " << edit;
+      if (triangles.size() > 3000) continue;  // takes long
+      double error = 0;
+      for (const std::uint32_t c : clusters)
+        if (const std::uint32_t maker = levels.clusters[c].made_by; maker != kNoGroup)
+          error = std::max(error, levels.groups[maker].error + 2 * moved[maker]);
+      for (std::size_t n = 0; n < model.node_count(); n += 61) {
+        double near2 = std::numeric_limits<double>::infinity();
+        for (const CoarseTriangle& t : triangles)
+          near2 = std::min(near2,
+                           spatial::closest_on_triangle({model.position(t.node[0]), model.position(t.node[1]), model.position(t.node[2])},
+                                                        model.position(NodeIndex(n)))
+                               .distance2);
+        ASSERT_LE(std::sqrt(near2), 1.2 * error + 1e-9) << "edit " << edit << ", " << triangles.size() << " triangles";
+        const double distance_now = std::max(1.0, (model.position(NodeIndex(n)) - view.eye).norm());
+        ASSERT_LE(std::sqrt(near2) * 1000 / distance_now, 1.2 * 2 + 1e-6) << "pixels, edit " << edit;
+      }
+    }
+  }
 }
 
 TEST(Levels, leave_out_what_cant_be_drawn) {
@@ -294,9 +365,41 @@ TEST(Levels, hold_slivers_points_and_coordinates_far_from_zero) {
   EXPECT_EQ(levels.shells.size(), model.shell_count());
   const Viewpoint far{{1e7, 1e7, 2e7}, 1000, 1};
   std::vector<std::uint32_t> clusters;
-  choose(levels, {}, far, 1, clusters);
+  choose(levels, {}, far, {1}, clusters);
   EXPECT_LT(triangles_of(levels, clusters), model.shell_count());
   for (const Group& group : levels.groups) EXPECT_TRUE(std::isfinite(group.error) && std::isfinite(group.sphere.radius));
+}
+
+TEST(Levels, keep_junctions_of_sheets_together) {
+  Sheets sheets;  // five sheets that meet in one line
+  std::vector<std::uint32_t> line;
+  for (int k = 0; k <= 200; ++k) line.push_back(sheets.node({double(k), 0, 0}));
+  for (int sheet = 0; sheet < 5; ++sheet) {
+    std::vector<std::uint32_t> before = line;
+    for (int row = 1; row <= 20; ++row) {
+      std::vector<std::uint32_t> now;
+      for (int k = 0; k <= 200; ++k) now.push_back(sheets.node({double(k), row * std::cos(1.2 * sheet), row * std::sin(1.2 * sheet)}));
+      for (std::size_t k = 0; k < 200; ++k) sheets.quad({before[k], before[k + 1], now[k + 1], now[k]}, 0);
+      before = now;
+    }
+  }
+  const Model model = sheets.model();
+  const Levels levels = build_levels(model).value();
+  const std::set<std::uint32_t> joint(line.begin(), line.end());
+  std::size_t coarse = 0;
+  from_everywhere(model, levels, [&](const std::vector<std::uint32_t>& clusters, const Viewpoint&) {
+    std::map<std::pair<std::uint32_t, std::uint32_t>, int> on_line;
+    const auto triangles = triangles_of_clusters(model, levels, clusters);
+    for (const CoarseTriangle& t : triangles)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t a = t.node[k].value, b = t.node[(k + 1) % 3].value;
+        if (joint.count(a) > 0 && joint.count(b) > 0) ++on_line[std::minmax(a, b)];
+      }
+    for (const auto& [edge, uses] : on_line)
+      ASSERT_EQ(uses, 5) << "a sheet has come off between nodes " << edge.first << " and " << edge.second;
+    coarse += triangles.size() < model.shell_count() / 10 ? 1 : 0;
+  });
+  EXPECT_GT(coarse, 0u);
 }
 
 TEST(Levels, stop_when_told) {
