@@ -71,7 +71,7 @@ class Demo(unittest.TestCase):
         lines = [line for line in done.stdout.splitlines() if line and not line.startswith(" ")]
         words = [line.split()[0] for line in lines]
         self.assertEqual(words[: len(STEPS)], STEPS)
-        self.assertEqual(words[-7:], ["compared", "saved", "modeld", "doctor", "contact", "joining", "remote"])
+        self.assertEqual(words[-8:], ["compared", "saved", "modeld", "doctor", "contact", "joining", "figure", "remote"])
         return {line.split()[0]: line for line in lines}
 
     def test_the_sample_ends_with_none_failing(self):
@@ -90,6 +90,29 @@ class Demo(unittest.TestCase):
             low, high = (30, 120) if len(corners) == 3 else (40, 140)
             sides = [math.dist(mesh.at[corners[i]], mesh.at[corners[i - 1]]) for i in range(len(corners))]
             self.assertTrue(low <= min(angles) and max(angles) <= high and max(sides) <= 5 * min(sides), f"shell {shell}: {angles}, {sides}")
+
+        self.check_figure(self.folder / "out" / "figure12")
+
+    def check_figure(self, folder):
+        """The decks of the figure's stages, by their text alone."""
+        beams, ends = {}, {}
+        for stage in "abdef":
+            section, beams[stage], nodes = "", 0, {}
+            for line in (folder / f"{stage}.k").read_text().splitlines():
+                if line.startswith("*"):
+                    section = line.split()[0]
+                elif line.startswith("$"):
+                    continue
+                elif section == "*NODE":
+                    nodes[int(line[:8])] = [float(line[8 + 16 * i : 24 + 16 * i]) for i in range(3)]
+                elif section.startswith("*ELEMENT_BEAM"):
+                    beams[stage] += 1
+            ends[stage] = max(at[0] for at in nodes.values())
+        self.assertAlmostEqual(ends["a"], 1640, 6)
+        for stage in "bdef":
+            self.assertAlmostEqual(ends[stage], 1790, 6, stage)
+        self.assertEqual({beams[stage] for stage in "abde"}, {183})
+        self.assertGreater(beams["f"], 190)
 
     def test_a_nastran_and_a_radioss_deck_are_shaped_mended_and_saved(self):
         for name, text in (("plate.bdf", nastran_plate()), ("PLATE_0000.rad", radioss_plate())):
