@@ -14,6 +14,7 @@
 #include "kiosk/tools/quality/quality_tool.h"
 #include "kiosk/tools/selection/selection_tool.h"
 #include "kiosk/tools/shaping/shaping_tool.h"
+#include "kiosk/tools/tour/tour_tool.h"
 #include "kiosk/tools/view/view_tool.h"
 #include "kiosk/tools/welding/welding_tool.h"
 
@@ -51,6 +52,7 @@ const std::vector<ListedTool>& listed_tools() {
       {tools::view::keys(), make<tools::view::ViewTool>},
       {tools::pen::keys(), make<tools::pen::PenTool>},
       {kWindowKeys},
+      {tools::tour::keys(), make<tools::tour::TourTool>},
   };
   return kTools;
 }

@@ -1,30 +1,39 @@
-// Where the ends of a weld must go so that it joins two sheets. Rules: docs/welds.md.
+// Where the nodes of a weld must go so that it joins sheets that lie on each other. Rules: docs/welds.md.
 #pragma once
 
-#include <array>
+#include <functional>
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "mesh/model/model.h"
 #include "mesh/spatial/box_tree.h"
 
 namespace prismesh::mesh::connections {
 
+/// A node of a weld, in the order of its chain.
+struct WeldEnd {
+  Vec3 at = Vec3::Zero();
+  bool fixed = false;  ///< it can't move
+};
+
 /// Lengths are in the deck's unit.
 struct SeatOptions {
-  double thickness_factor = 2;     ///< as FlangeOptions
-  double gap = 0;                  ///< as SpotOptions
-  std::optional<double> max_move;  ///< of an end; absent: as long as a joint at the sheet may be
+  double thickness_factor = 2;             ///< as FlangeOptions
+  double gap = 0;                          ///< as SpotOptions
+  std::optional<double> max_move;          ///< of a node; absent: as long as a joint at the sheet may be
+  std::function<bool(PartIndex)> is_tied;  ///< whether the weld may join this part; empty: any
 };
 
 struct WeldSeat {
-  std::array<std::optional<Vec3>, 2> to;  ///< per end; nothing: it stays
-  std::string why;                        ///< why there is none, to be read after the weld's name; empty: there is one
+  std::vector<std::optional<Vec3>> to;  ///< per node; nothing: it stays
+  std::string why;                      ///< why there is none, to be read after the weld's name; empty: there is one
 };
 
-/// Finds the sheets that lie on each other at the weld, and puts each end onto one of two that are neighbours, so that they move the least.
-/// An end that lies on its sheet stays. `fixed`: an end that can't move. `tree`: of the model.
-WeldSeat seat_weld(const Model& model, const spatial::BoxTree& tree, const std::array<Vec3, 2>& ends, const std::array<bool, 2>& fixed,
-                   const SeatOptions& options);
+/// Finds the sheets that lie on each other at the weld, and puts its nodes onto as many of them that are neighbours, so that they move the
+/// least. A node that lies on its sheet stays, and the nodes keep their order along the stack. `ends`: at least two. `tree`: of the model,
+/// without the shells that don't count.
+WeldSeat seat_weld(const Model& model, const spatial::BoxTree& tree, std::span<const WeldEnd> ends, const SeatOptions& options);
 
 }  // namespace prismesh::mesh::connections

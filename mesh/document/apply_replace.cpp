@@ -193,6 +193,8 @@ void list_loose(const Generation& before, const Generation& next, const PartExch
         std::to_string(model.node_ids[each.ends[0].value]) + " and node:" + std::to_string(model.node_ids[each.ends[1].value]) + " of " +
         (each.part.valid() ? "part:" + std::to_string((*model.parts)[each.part.value].id) : std::string("another shell")) +
         ", which doesn't have it");
+  for (const ShellIndex each : plan.lost_segments)
+    add("the segment at shell:" + std::to_string(model.shell_ids[each.value]) + " is gone: no new shell has its centre on it");
   for (const NodeOnSheet& each : off_sheets) {
     const std::string name_of_node = "node:" + std::to_string(model.node_ids[each.node.value]);
     const std::string what = each.tied

@@ -1,4 +1,5 @@
 #include "mesh/document/part_exchange.h"
+#include "base/readable_number.h"
 
 #include <algorithm>
 #include <array>
@@ -389,9 +390,11 @@ class ExchangePlanner {
     const ShellNodes& corners = model_.shell(on.shell);
     const auto count = static_cast<std::size_t>(corners.corners());
     const double snap = kSnapShare * tolerance_;
-    for (std::size_t c = 0; c < count; ++c)
-      if ((model_.position(corners.node[c]) - at).norm() <= snap)
-        return {{corners.node[c], NodeIndex(), NodeIndex(), NodeIndex()}, {1, 0, 0, 0}};
+    // The nearest: on stretched shells the snap reaches several.
+    const auto away = [&](NodeIndex corner) { return (model_.position(corner) - at).norm(); };
+    const NodeIndex nearest = *std::min_element(corners.node.begin(), corners.node.begin() + static_cast<std::ptrdiff_t>(count),
+                                                [&](NodeIndex a, NodeIndex b) { return away(a) < away(b); });
+    if (away(nearest) <= snap) return {{nearest, NodeIndex(), NodeIndex(), NodeIndex()}, {1, 0, 0, 0}};
     for (std::size_t c = 0; c < count; ++c) {
       const NodeIndex a = corners.node[c], b = corners.node[(c + 1) % count];
       const Vec3 from = model_.position(a), along = model_.position(b) - from;
@@ -533,6 +536,18 @@ class ExchangePlanner {
     return is_plain(old_shells_[static_cast<std::size_t>(at)]);
   }
 
+  /// Segments go with the new shells that come from their shell.
+  void find_lost_segments() {
+    ShellSet followed;
+    for (std::size_t s = 0; s < mesh_.shells.size(); ++s)
+      for (const ShellIndex from : {plan_.parent[s], plan_.shell[s]})
+        if (from.valid()) followed.push_back(from);
+    std::sort(followed.begin(), followed.end());
+    for (std::size_t s = 0; s < old_shells_.size(); ++s)
+      if (old_shells_[s].in_segments && !std::binary_search(followed.begin(), followed.end(), plan_.old_shells[s]))
+        plan_.lost_segments.push_back(plan_.old_shells[s]);
+  }
+
   void place_shells(const spatial::ShellTree& old_surface) {
     std::map<std::pair<std::int64_t, bool>, ShellIndex> free_by_id;
     std::optional<ShellIndex> plain;
@@ -542,10 +557,14 @@ class ExchangePlanner {
       if (!kept_shells_.contains(shell))
         free_by_id.emplace(std::pair(model_.shell_ids[shell.value], model_.shell(shell).is_triangle()), shell);
     }
-    bool noted = false;
+    bool noted = false, near = false;
     for (std::size_t s = 0; s < mesh_.shells.size(); ++s) {
-      if (plan_.shell[s].valid()) continue;
+      if (plan_.shell[s].valid()) {
+        near = true;
+        continue;
+      }
       std::optional<spatial::SurfacePoint> on = old_surface.closest(shell_at_[s], tolerance_);
+      near = near || on.has_value();
       if (!on && !plain) {
         on = old_surface.closest(shell_at_[s]);
         if (!std::exchange(noted, true))
@@ -563,6 +582,10 @@ class ExchangePlanner {
       kept_shells_.insert(same->second);
       free_by_id.erase(same);
     }
+    if (!near)
+      plan_.notes.push_back("no shell of the new mesh is within " + readable(tolerance_, 3) +
+                            " of the old mesh: check where it stands, and its unit");
+    find_lost_segments();
   }
 
   void remove_rest() {

@@ -43,6 +43,7 @@ struct PartExchange {
   NodeSet removed_nodes;
   std::vector<LostNode> lost;
   std::vector<NodeBetween> between;
+  ShellSet lost_segments;              ///< old shells that cards name as segments, and that no new shell comes from
   std::size_t joined_by_elements = 0;  ///< nodes of other parts and elements that the new mesh has
   std::size_t joined_by_cards = 0;     ///< other nodes that cards name, likewise
   std::vector<std::string> notes;

@@ -91,6 +91,7 @@ const std::vector<Module>& modules() {
       {"kiosk/tools/comparison", {"kiosk/toolkit"}},
       {"kiosk/tools/contact", {"kiosk/toolkit"}},
       {"kiosk/tools/cutting", {"kiosk/toolkit", "mesh/measure"}},
+      {"kiosk/tools/tour", {"kiosk/toolkit"}},
       {"kiosk/tools/welding", {"kiosk/toolkit"}},
       {"kiosk/tools/measuring", {"kiosk/toolkit", "mesh/measure"}},
       {"kiosk/tools/selection", {"kiosk/toolkit"}},
@@ -104,7 +105,7 @@ const std::vector<Module>& modules() {
       {"kiosk/calibration", {"kiosk/display", "kiosk/render"}},
       {"kiosk",
        {"kiosk/tools/files", "kiosk/tools/find", "kiosk/tools/comparison", "kiosk/tools/contact", "kiosk/tools/selection",
-        "kiosk/tools/cutting", "kiosk/tools/welding", "kiosk/tools/measuring", "kiosk/tools/shaping", "kiosk/tools/pen",
+        "kiosk/tools/cutting", "kiosk/tools/welding", "kiosk/tools/tour", "kiosk/tools/measuring", "kiosk/tools/shaping", "kiosk/tools/pen",
         "kiosk/tools/quality", "kiosk/tools/mesh_operations", "kiosk/tools/parts", "kiosk/tools/history", "kiosk/tools/view",
         "kiosk/calibration", "kiosk/display/kms", "kiosk/display/x11", "drivers/settings"}},
 

@@ -238,20 +238,25 @@ std::optional<Pixel> WeldingTool::pixel_of(std::size_t line) const {
   return stereo::pixel_of(toolkit::aim(context_.view), middle);
 }
 
+std::optional<std::size_t> WeldingTool::weld_at(const Pixel& pixel) const {
+  for (std::size_t i = 0; i < std::min(wanted_->would->lines.size(), kMaxWeldsDrawn); ++i)
+    if (const auto at = pixel_of(i); at && (*at - pixel).norm() <= kGrabPixels) return i;
+  return std::nullopt;
+}
+
 Under WeldingTool::under(const Pixel& pixel) const {
   if (!in_mode_ || !is_shown() || drag_) return Under::picture;
-  // Any but the first: the distance from that one sets the pitch.
-  for (std::size_t i = 1; i < std::min(wanted_->would->lines.size(), kMaxWeldsDrawn); ++i)
-    if (const auto at = pixel_of(i); at && (*at - pixel).norm() <= kGrabPixels) return Under::weld;
-  return Under::picture;
+  return weld_at(pixel) ? Under::weld : Under::picture;
 }
 
 bool WeldingTool::gesture(const input::Gesture& gesture) {
   if (!in_mode_) return false;
   if (const auto* taken = std::get_if<input::HandleTaken>(&gesture)) {
     if (taken->handle != Under::weld || !is_shown()) return false;
-    const auto from = pixel_of(0);
-    if (!from || (taken->at - *from).norm() < 1) return true;
+    // The distance from the first one sets the pitch; of the first one, that from the last.
+    const auto weld = weld_at(taken->at);
+    const auto from = pixel_of(weld == 0 ? std::min(wanted_->would->lines.size(), kMaxWeldsDrawn) - 1 : 0);
+    if (!weld || !from || (taken->at - *from).norm() < 1) return true;
     drag_ = DraggedWeld{*from, taken->at, pitch()};
     return true;
   }
@@ -290,6 +295,12 @@ void WeldingTool::cancel_gesture() {
 
 void WeldingTool::repair() {
   if (context_.open.in_hand != this) toolkit::take_in_hand(context_, this);
+  const ipc::WeldChecks* checks = list_.checks();
+  const bool known = checks != nullptr && context_.shown.snapshot && checks->generation == context_.shown.snapshot->info().generation &&
+                     checks->finding_count == checks->findings.size();
+  const auto hangs = [](const ipc::WeldFound& each) { return each.kind == "loose-end" || each.kind == "joins-nothing"; };
+  if (known && std::none_of(checks->findings.begin(), checks->findings.end(), hangs))
+    return context_.notices.say(notices::Notice::Kind::information, "No weld has a loose end or joins nothing.");
   toolkit::send(context_, mesh::document::RepairWelds{});
 }
 

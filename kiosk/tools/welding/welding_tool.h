@@ -79,6 +79,8 @@ class WeldingTool final : public toolkit::Tool,
   double pitch() const;
   mesh::document::Weld edit() const;
   std::optional<input::Pixel> pixel_of(std::size_t line) const;
+  /// The shown weld at a pixel. Precondition: is_shown().
+  std::optional<std::size_t> weld_at(const input::Pixel& pixel) const;
   void click(const input::Pixel& at);
   void ask();
   void set_pitch(double pitch);

@@ -169,6 +169,55 @@ TEST_F(WeldMending, of_a_chain_through_three_sheets_moves_the_loose_end_alone) {
   EXPECT_THAT(heights(deck), testing::ElementsAre(0, 1.5, 1.5, testing::DoubleNear(3, 1e-12)));
 }
 
+TEST_F(WeldMending, of_a_chain_that_hangs_above_three_sheets_joins_all_of_them) {
+  const std::string chain =
+      "*NODE\n   70001            50.0            10.0             9.0\n   70002            50.0            10.0            10.0\n"
+      "   70003            50.0            10.0            11.0\n*ELEMENT_BEAM\n   90001      90   70001   70002       0       0       0"
+      "       0       0       2\n   90002      90   70002   70003       0       0       0       0       0       2\n";
+  Document deck = document(chain, 3);
+  EXPECT_EQ(must_apply(deck, kMend).welds_mended->mended, 2U);
+  EXPECT_THAT(heights(deck), testing::ElementsAre(0, 1.5, 1.5, 3));
+}
+
+TEST_F(WeldMending, turns_no_weld_over) {
+  Document down = document(weld_at(50, 10, 7.5, 6));
+  must_apply(down, kMend);
+  EXPECT_THAT(heights(down), testing::ElementsAre(1.5, 0));
+  Document up = document(weld_at(50, 10, 6, 7.5));
+  must_apply(up, kMend);
+  EXPECT_THAT(heights(up), testing::ElementsAre(0, 1.5));
+}
+
+TEST_F(WeldMending, mends_none_whose_ends_lie_far_apart_on_their_sheets) {
+  char text[256];
+  std::snprintf(text, sizeof text,
+                "*NODE\n%8d%16.6f%16.6f%16.6f\n%8d%16.6f%16.6f%16.6f\n*ELEMENT_BEAM\n%8d      90%8d%8d       0       0       0       0     "
+                "  0       2\n",
+                70001, 15.0, 10.0, 0.0, 70002, 95.0, 10.0, 1.5, 90001, 70001, 70002);
+  Document deck = document(text);
+  const EditReport report = must_apply(deck, kMend);
+  EXPECT_EQ(report.nodes_moved, 0U);
+  ASSERT_EQ(report.welds_mended->left.size(), 1U);
+  EXPECT_THAT(report.welds_mended->left[0].why, HasSubstr("an end would have to move by 80, farther than "));
+}
+
+TEST_F(WeldMending, joins_only_sheets_that_a_contact_ties_it_to) {
+  // It ties part 90 to parts 2 and 3; part 1 lies below them.
+  const std::string tie =
+      "*PART\nspot welds\n        90        90        90\n*SECTION_BEAM\n        90         9\n       6.0       6.0\n"
+      "*SET_PART_LIST\n        91\n         2         3\n*SET_PART_LIST\n        92\n        90\n"
+      "*CONTACT_SPOTWELD\n        92        91         2         2\n\n\n\n";
+  Document deck = document(weld_at(50, 10, -7, -5) + tie, 3);
+  must_apply(deck, kMend);
+  EXPECT_THAT(heights(deck), testing::ElementsAre(1.5, 3)) << "not on part 1, which is nearest";
+}
+
+TEST_F(WeldMending, looks_at_no_hidden_part) {
+  Document deck = document(weld_at(50, 10, 7, 9), 2);
+  must_apply(deck, R"({"edit": "hide", "on": "2"})");
+  EXPECT_EQ(must_apply(deck, kMend).welds_mended->left[0].why, "beam:90001: only a sheet of part:1 is there");
+}
+
 TEST_F(WeldMending, says_what_it_leaves_and_why) {
   Document single = document(weld_at(50, 10, 0, 9.5), 1);
   const EditReport report = must_apply(single, kMend);
