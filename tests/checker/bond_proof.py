@@ -140,6 +140,8 @@ def main():
             assert done.returncode == 0, done.stderr[-2000:]
             said = json.loads(done.stdout.splitlines()[0])
             assert said["solids_left"] == 0 and said["solids_added"] == count, said
+            words = subprocess.run([prismesh, "edit", path, "--edit", json.dumps(EDIT), "-o", out], capture_output=True, text=True, check=True)
+            assert words.stdout.startswith(f"bond: {count} solids added; 0 left out\n  {count} solids added to part:3, "), words.stdout
             print(f"{name}:")
             after = read(out)
             check(text, after, count, tolerance)

@@ -71,7 +71,9 @@ class BondEdit : public ::testing::Test {
     return report ? "it was applied" : report.error().text();
   }
   static const ElementBlock& solids(const Document& document) {
-    return *document.current().model.elements[static_cast<std::size_t>(ElementClass::solid)];
+    static const ElementBlock none;
+    const auto& block = document.current().model.elements[static_cast<std::size_t>(ElementClass::solid)];
+    return block ? *block : none;
   }
   static std::array<Vec3, 8> corners(const Document& document, std::size_t solid) {
     std::array<Vec3, 8> at;
