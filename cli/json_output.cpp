@@ -51,6 +51,16 @@ void add_welded(const document::Welded& welded, Json& object) {
   object["left_out"] = std::move(left);
 }
 
+void add_bonded(const document::Bonded& bonded, Json& object) {
+  Json left = Json::array();
+  for (const document::SpotLeft& spot : bonded.left_out) left.push_back({{"at", spot.at}, {"why", printable(spot.why)}});
+  object["solids_added"] = bonded.solids_added;
+  object["solids_left"] = bonded.solids_left;
+  object["left_out"] = std::move(left);
+  object["thinnest"] = bonded.thinnest;
+  object["thickest"] = bonded.thickest;
+}
+
 void add_mended(const document::WeldsMended& mended, Json& object) {
   Json left = Json::array();
   for (const document::WeldLeft& weld : mended.left) left.push_back({{"at", weld.at}, {"why", printable(weld.why)}});
@@ -80,6 +90,7 @@ Json edit_object(const document::EditReport& report) {
   object["lost_connections"] = report.lost_connections;
   if (report.separated) add_separated(*report.separated, object);
   if (report.welded) add_welded(*report.welded, object);
+  if (report.bonded) add_bonded(*report.bonded, object);
   if (report.welds_mended) add_mended(*report.welds_mended, object);
   if (report.stopped) object["stopped"] = stopped_object(*report.stopped);
   if (report.mass_before) object["mass_before"] = *report.mass_before;

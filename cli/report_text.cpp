@@ -133,6 +133,12 @@ void print_edit(std::ostream& out, const mesh::document::EditReport& report) {
     for (const std::string& note : report.notes) out << "  " << printable(note) << '\n';
     return;
   }
+  if (report.bonded) {
+    out << report.edit << ": " << counted(report.bonded->solids_added, "solid") << " added; " << report.bonded->solids_left
+        << " left out\n";
+    for (const std::string& note : report.notes) out << "  " << printable(note) << '\n';
+    return;
+  }
   out << report.edit << ": " << counted(report.nodes_moved, "node") << " moved; warn " << report.before.warn << " -> " << report.after.warn
       << ", fail " << report.before.fail << " -> " << report.after.fail;
   if (report.clusters_before + report.clusters_after > 0)

@@ -61,6 +61,7 @@ std::string words_of_edit(const Edit& edit, std::string_view unit) {
         if constexpr (std::is_same_v<E, Restructure>) return of_operation(each.operation);
         if constexpr (std::is_same_v<E, Separate>) return "Separated";
         if constexpr (std::is_same_v<E, Weld>) return "Welded";
+        if constexpr (std::is_same_v<E, Bond>) return "Bonded";
         if constexpr (std::is_same_v<E, RepairWelds>) return "Welds repaired";
         return {};
       },

@@ -28,6 +28,7 @@ Result<void> apply_edit(const Document& document, const Repair& edit, Generation
 Result<void> apply_edit(const Document& document, const Restructure& edit, Generation& next, EditReport& report);
 Result<void> apply_edit(const Document& document, const Separate& edit, Generation& next, EditReport& report, const Progress& progress);
 Result<void> apply_edit(const Document& document, const Weld& edit, Generation& next, EditReport& report, const Progress& progress);
+Result<void> apply_edit(const Document& document, const Bond& edit, Generation& next, EditReport& report, const Progress& progress);
 Result<void> apply_edit(const Document& document, const RepairWelds& edit, Generation& next, EditReport& report);
 Result<void> apply_edit(const Document& document, const ReplacePart& edit, Generation& next, EditReport& report, const Progress& progress);
 

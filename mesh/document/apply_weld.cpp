@@ -1,10 +1,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <optional>
 #include <span>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,6 +19,7 @@
 #include "mesh/document/deck_relations.h"
 #include "mesh/document/grow_parts.h"
 #include "mesh/document/grow_relations.h"
+#include "mesh/document/join_sheets.h"
 #include "mesh/document/part_marks.h"
 #include "mesh/document/restructure.h"
 #include "mesh/document/weld_places.h"
@@ -35,10 +34,6 @@ using connections::SheetAtSpot;
 using connections::SpotStack;
 
 constexpr std::size_t kMaxSpotsTold = 1000;
-
-std::string part_words(const Model& model, PartIndex part) {
-  return part.valid() ? "part:" + std::to_string((*model.parts)[part.value].id) : "a shell of no part";
-}
 
 std::string short_words(double length) { return readable(length, 3); }
 
@@ -55,36 +50,6 @@ struct WeldKind {
   bool joins_sets = false;          ///< new nodes join the sets of the ends
   bool tied_by_end = false;         ///< ties name its ends in sets of their own
 };
-
-/// "beam:9" as a class and an id.
-struct NamedElement {
-  ElementClass element_class = ElementClass::beam;
-  std::int64_t id = 0;
-};
-
-Result<NamedElement> parse_element(const std::string& text) {
-  const std::size_t colon = text.find(':');
-  const std::string word = text.substr(0, colon), digits = colon == std::string::npos ? "" : text.substr(colon + 1);
-  const bool is_id = !digits.empty() && digits.size() <= 18 && digits.find_first_not_of("0123456789") == std::string::npos;
-  for (int c = 1; is_id && c < kElementClassCount; ++c)
-    if (const auto each = static_cast<ElementClass>(c); word == name(each) || (word == "spring" && each == ElementClass::discrete))
-      return NamedElement{each, std::stoll(digits)};
-  return fail("", "weld: \"like\" must name an element that is a weld, as \"beam:9\", not \"" + text + "\"");
-}
-
-/// The element's index in its class. Errors: there is none, or it is left out.
-Result<std::uint32_t> find_element(const Document& document, const NamedElement& wanted) {
-  const Model& model = document.current().model;
-  const std::string words = std::string(name(wanted.element_class)) + " " + std::to_string(wanted.id);
-  const auto& block = model.elements[static_cast<std::size_t>(wanted.element_class)];
-  if (block)
-    if (const auto at = std::find(block->id.begin(), block->id.end(), wanted.id); at != block->id.end())
-      return static_cast<std::uint32_t>(at - block->id.begin());
-  for (const deck::HiddenElements::Card& card : document.deck->hidden.cards)
-    if (card.element_class == wanted.element_class && card.id == wanted.id)
-      return fail("", "weld: " + words + " can't be the example: a node of it isn't defined");
-  return fail("", "weld: there is no " + words);
-}
 
 /// The deck's node whose sets an end's are.
 NodeIndex first_of_deck(const Model& model, NodeIndex node) {
@@ -109,9 +74,9 @@ void note_ends(const Document& document, WeldKind& kind) {
 
 Result<WeldKind> like_existing(const Document& document, const std::string& like) {
   const Model& model = document.current().model;
-  const Result<NamedElement> named = parse_element(like);
+  const Result<NamedElement> named = parse_element(like, "weld", "a weld, as \"beam:9\"");
   if (!named) return fail(named.error());
-  const Result<std::uint32_t> element = find_element(document, *named);
+  const Result<std::uint32_t> element = index_of_element(document, *named, "weld");
   if (!element) return fail(element.error());
   const auto c = static_cast<std::size_t>(named->element_class);
   const ElementBlock& block = *model.elements[c];
@@ -202,49 +167,22 @@ Result<WeldKind> make_part(const Document& document, const Weld& edit, const std
 
 // --- where ---
 
-/// Where welds are already: the nodes and middles of beams, springs and placed nodes, by cells of a grid.
-class WeldsThere {
- public:
-  WeldsThere(const Generation& generation, double cell) : cell_(cell) {
-    const Model& model = generation.model;
-    for (const NodeOnSheet& each : generation.relations->dependents.on_sheets)
-      if (!each.tied) add(model.position(each.node));
-    for (const ElementClass kind : {ElementClass::beam, ElementClass::discrete}) {
-      const auto& block = model.elements[static_cast<std::size_t>(kind)];
-      for (std::size_t e = 0; block && e < block->size(); ++e) {
-        if (block->first_node[e + 1] - block->first_node[e] != 2) continue;
-        const Vec3 &a = model.position(block->nodes[block->first_node[e]]), &b = model.position(block->nodes[block->first_node[e] + 1]);
-        if ((a - b).norm() < 2 * cell) add((a + b) / 2);
-      }
+/// Where welds are already: the nodes and middles of beams, springs and placed nodes.
+PlacesTaken welds_there(const Generation& generation, double cell) {
+  PlacesTaken taken(cell);
+  const Model& model = generation.model;
+  for (const NodeOnSheet& each : generation.relations->dependents.on_sheets)
+    if (!each.tied) taken.add(model.position(each.node));
+  for (const ElementClass kind : {ElementClass::beam, ElementClass::discrete}) {
+    const auto& block = model.elements[static_cast<std::size_t>(kind)];
+    for (std::size_t e = 0; block && e < block->size(); ++e) {
+      if (block->first_node[e + 1] - block->first_node[e] != 2) continue;
+      const Vec3 &a = model.position(block->nodes[block->first_node[e]]), &b = model.position(block->nodes[block->first_node[e] + 1]);
+      if ((a - b).norm() < 2 * cell) taken.add((a + b) / 2);
     }
   }
-  void add(const Vec3& at) {
-    if (cell_ > 0) cells_[cell_of(at)].push_back(at);
-  }
-  /// Whether one is nearer than the cell's size.
-  bool near(const Vec3& at) const {
-    if (!(cell_ > 0)) return false;
-    const std::array<std::int64_t, 3> middle = cell_of(at);
-    for (std::int64_t x = -1; x <= 1; ++x)
-      for (std::int64_t y = -1; y <= 1; ++y)
-        for (std::int64_t z = -1; z <= 1; ++z)
-          if (const auto cell = cells_.find({middle[0] + x, middle[1] + y, middle[2] + z}); cell != cells_.end())
-            for (const Vec3& other : cell->second)
-              if ((other - at).norm() < cell_) return true;
-    return false;
-  }
-
- private:
-  std::array<std::int64_t, 3> cell_of(const Vec3& at) const {
-    std::array<std::int64_t, 3> cell{};
-    for (std::size_t k = 0; k < 3; ++k)
-      cell[k] = static_cast<std::int64_t>(std::floor(std::clamp(at[static_cast<Eigen::Index>(k)] / cell_, -1e15, 1e15)));
-    return cell;
-  }
-
-  double cell_;
-  std::map<std::array<std::int64_t, 3>, std::vector<Vec3>> cells_;
-};
+  return taken;
+}
 
 /// Welds that are nearer than this are one on the other: a hundredth of the shells' sides.
 double same_place(const Model& model) {
@@ -273,7 +211,7 @@ class SpotSearch {
         edit_(edit),
         kind_(kind),
         report_(report),
-        there_(generation, edit.pitch ? *edit.pitch / 2 : same_place(generation.model)),
+        there_(welds_there(generation, edit.pitch ? *edit.pitch / 2 : same_place(generation.model))),
         all_(generation.model) {
     report_.welded.emplace();
     options_.gap = edit.gap;
@@ -323,7 +261,7 @@ class SpotSearch {
                                         : std::string("no sheet is there"));
     const auto wanted = static_cast<std::size_t>(edit_.sheets.value_or(2));
     if (stack.sheets.size() < wanted)
-      return leave(place, (stack.sheets.size() == 1 ? "only a sheet of " + part_words(model, part_of(stack.sheets.front())) + " is"
+      return leave(place, (stack.sheets.size() == 1 ? "only a sheet of " + sheet_part_words(model, part_of(stack.sheets.front())) + " is"
                                                     : "only " + std::to_string(stack.sheets.size()) + " sheets are") +
                               " there" + thickness_words(stack));
     std::vector<SheetAtSpot> sheets = nearest_sheets(stack, place);
@@ -334,8 +272,8 @@ class SpotSearch {
     if (kind_ != nullptr && kind_->tied_by_end)
       for (const SheetAtSpot& sheet : sheets)
         if (const PartIndex part = part_of(sheet); part != kind_->sheets[0] && part != kind_->sheets[1])
-          return leave(place, "the ties of the existing weld hold " + part_words(model, kind_->sheets[0]) + " and " +
-                                  part_words(model, kind_->sheets[1]) + ", not " + part_words(model, part));
+          return leave(place, "the ties of the existing weld hold " + sheet_part_words(model, kind_->sheets[0]) + " and " +
+                                  sheet_part_words(model, kind_->sheets[1]) + ", not " + sheet_part_words(model, part));
     for (const SheetAtSpot& sheet : sheets) there_.add(sheet.point);
     welds.push_back({place, std::move(sheets)});
   }
@@ -367,7 +305,7 @@ class SpotSearch {
   const WeldKind* kind_;
   EditReport& report_;
   connections::SpotOptions options_;
-  WeldsThere there_;
+  PlacesTaken there_;
   spatial::BoxTree all_;
   std::string first_;
 };
@@ -381,22 +319,6 @@ std::vector<PartIndex> parts_joined(const Model& model, const std::vector<Wanted
   std::sort(parts.begin(), parts.end());
   parts.erase(std::unique(parts.begin(), parts.end()), parts.end());
   return parts;
-}
-
-Result<void> refuse_locked(const Generation& generation, const std::vector<PartIndex>& parts, const std::string& what) {
-  for (const PartIndex part : parts)
-    if ((*generation.parts)[part.value].locked)
-      return fail("", "weld: " + part_words(generation.model, part) + " is locked: " + what + " would be added to it");
-  return {};
-}
-
-/// The corner of the shell that the place is nearest to.
-NodeOrigin corner_origin(const Model& model, const SheetAtSpot& sheet) {
-  const ShellNodes& nodes = model.shell(sheet.shell);
-  NodeIndex nearest = nodes.node[0];
-  for (const NodeIndex node : nodes.node)
-    if ((model.position(node) - sheet.point).squaredNorm() < (model.position(nearest) - sheet.point).squaredNorm()) nearest = node;
-  return {{nearest, NodeIndex(), NodeIndex(), NodeIndex()}, {1, 0, 0, 0}};
 }
 
 /// What a new node's card follows: the example's end on the same part, if there is one, before the other.
@@ -432,37 +354,6 @@ Result<void> add_welds(const Document& document, const WeldKind& kind, const std
     }
   }
   return deck::can_restructure(*document.deck, document.opened->model, model, {});
-}
-
-/// The parts in the set of sheets among the cards of a part that was made for welds, ascending.
-std::vector<std::int64_t> sheets_in_cards(const std::string& cards) {
-  std::istringstream lines(cards);
-  std::vector<std::int64_t> parts;
-  std::string line;
-  while (std::getline(lines, line) && line != "*SET_PART_LIST") {
-  }
-  std::getline(lines, line);  // the set's number
-  while (std::getline(lines, line) && !line.starts_with('*')) {
-    std::istringstream fields(line);
-    for (std::int64_t part = 0; fields >> part;) parts.push_back(part);
-  }
-  std::sort(parts.begin(), parts.end());
-  return parts;
-}
-
-/// Says which sheets the contact of the existing weld's part doesn't name.
-void note_untied(const Document& document, PartIndex part, const std::vector<PartIndex>& sheets, EditReport& report) {
-  const Model& model = document.current().model;
-  const std::vector<Part>& parts = *model.parts;
-  const bool is_added = model.topology_change && part.value >= model.topology_change->deck_parts;
-  const std::vector<std::int64_t> tied =
-      is_added ? sheets_in_cards(model.topology_change->added_parts[part.value - model.topology_change->deck_parts].cards)
-               : deck::parts_tied_with(*document.deck->references, parts[part.value].id);
-  if (tied.empty()) return;
-  for (const PartIndex sheet : sheets)
-    if (!std::binary_search(tied.begin(), tied.end(), parts[sheet.value].id))
-      report.notes.push_back(part_words(model, sheet) + " isn't among the parts to which a contact ties " + part_words(model, part) +
-                             ": welds there don't hold unless it is added");
 }
 
 /// Errors: what the edit asks for isn't made in this version, or contradicts itself.
@@ -513,10 +404,10 @@ Result<void> apply_edit(const Document& document, const Weld& edit, Generation& 
   if (welds.empty())
     return fail("", "weld: no weld can be made at any of " + counted(report.welded->spots_left, "spot") + ": " + search.first_reason());
   const std::vector<PartIndex> sheets = parts_joined(before.model, welds);
-  if (const Result<void> open = refuse_locked(before, sheets, "welds"); !open) return open;
+  if (const Result<void> open = refuse_locked(before, sheets, "welds", "weld"); !open) return open;
   if (kind)
-    if (const Result<void> open = refuse_locked(before, {kind->part}, "elements"); !open) return open;
-  if (kind) note_untied(document, kind->part, sheets, report);
+    if (const Result<void> open = refuse_locked(before, {kind->part}, "elements", "weld"); !open) return open;
+  if (kind) note_untied(document, kind->part, sheets, "welds", report);
   if (!kind) {
     Result<WeldKind> made = make_part(document, edit, sheets, next);
     if (!made) return fail(made.error());
@@ -530,7 +421,7 @@ Result<void> apply_edit(const Document& document, const Weld& edit, Generation& 
   mark_parts_at(changes.added_nodes, next);
   report.welded->welds_added = welds.size();
   report.elements_added = changes.other_elements();
-  report.notes.push_back(counted(welds.size(), "weld") + " added to " + part_words(next.model, kind->part));
+  report.notes.push_back(counted(welds.size(), "weld") + " added to " + sheet_part_words(next.model, kind->part));
   if (report.welded->spots_left > 0)
     report.notes.push_back(counted(report.welded->spots_left, "spot") + " left out; the first: " + search.first_reason());
   note_missing_files(document, changes, report);

@@ -238,6 +238,17 @@ struct Weld {
   std::optional<std::string> as;  ///< what a weld is: "beam"; absent: as `like`
 };
 
+/// Bonds the two sheets of a flange by a strip of hexahedra along its middle (docs/bonds.md). Lengths are in the deck's unit.
+struct Bond {
+  SelectFlange flange;              ///< the flange, or the flanges between parts; its mode is ignored
+  double width = 0;                 ///< across
+  double length = 0;                ///< of a hexahedron, about
+  double end_distance = 0;          ///< of the strip from the flange's ends
+  bool from_middles = false;        ///< "from": "middles": from middle surface to middle surface instead of from face to face
+  std::optional<std::string> like;  ///< "solid:9": a hexahedron whose part and card the new ones get
+  std::optional<double> density, youngs_modulus, poissons_ratio;  ///< without `like`: of the new material, in the deck's units
+};
+
 /// Puts the ends of welds back onto sheets: of those that have a loose end or join nothing (docs/welds.md). Lengths are in the deck's unit.
 struct RepairWelds {
   std::optional<std::vector<std::string>> at;  ///< only these: "beam:9"; absent: all
@@ -284,9 +295,9 @@ struct TakeBranch {
   std::uint64_t number = 0;  ///< Branch::number
 };
 
-using Edit =
-    std::variant<Select, SelectRegion, SelectLasso, SelectFlange, Grow, Shrink, Invert, SetParts, SetTargetSize, SetCriteria, Translate,
-                 Lift, Slide, Rotate, Move, Relax, Repair, Restructure, Separate, Weld, RepairWelds, ReplacePart, Undo, Redo, TakeBranch>;
+using Edit = std::variant<Select, SelectRegion, SelectLasso, SelectFlange, Grow, Shrink, Invert, SetParts, SetTargetSize, SetCriteria,
+                          Translate, Lift, Slide, Rotate, Move, Relax, Repair, Restructure, Separate, Weld, Bond, RepairWelds, ReplacePart,
+                          Undo, Redo, TakeBranch>;
 
 /// The Shaping of a shaping edit; null for the others.
 const Shaping* shaping_of(const Edit& edit);

@@ -124,6 +124,8 @@ inline constexpr WholeNumberLimits kPartIds{1, 1'000'000'000'000'000'000};
 inline constexpr ListLimits kVariantNodes{3, 100'000'000, "nodes [id, x, y, z]", "node"};
 inline constexpr ListLimits kVariantShells{1, 100'000'000, "shells [id, node, node, node, node]", "shell"};
 inline constexpr ListLimits kContactKinds{1, 2, "kinds of contact like [\"perforation\", \"penetration\"]", ""};
+inline constexpr TwoWords kBondedSurfaces{"faces", "middles",
+                                          "\"faces\" (of the sheets, by their thickness) or \"middles\" (their middle surfaces)"};
 inline constexpr TwoWords kNormals{"grab", "each", "\"grab\" (all nodes along the normal at the grab) or \"each\""};
 
 template <>
@@ -204,6 +206,10 @@ PRISMESH_JSON_OBJECT(mesh::document::Weld, f("flange", m.flange), f("along", m.a
                      f("density", m.density, kPositive), f("youngs_modulus", m.youngs_modulus, kPositive),
                      f("poissons_ratio", m.poissons_ratio, NumberLimits{0, 0.5}), f("yield_stress", m.yield_stress, kPositive),
                      f("as", m.as));
+PRISMESH_JSON_OBJECT(mesh::document::Bond, f.required("flange", m.flange), f.required("width", m.width, kPositive),
+                     f.required("length", m.length, kPositive), f("end_distance", m.end_distance, kNotNegative),
+                     f("from", m.from_middles, kBondedSurfaces), f("like", m.like), f("density", m.density, kPositive),
+                     f("youngs_modulus", m.youngs_modulus, kPositive), f("poissons_ratio", m.poissons_ratio, NumberLimits{0, 0.5}));
 PRISMESH_JSON_OBJECT(mesh::document::RepairWelds, f("at", m.at, kWelds), f("gap", m.gap, kNotNegative),
                      f("max_move", m.max_move, kPositive));
 PRISMESH_JSON_OBJECT(mesh::document::VariantMesh, f.required("nodes", m.nodes, kVariantNodes),

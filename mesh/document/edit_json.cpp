@@ -18,9 +18,6 @@ using json::Json;
 using json::listed;
 using json::must_be;
 
-/// Edits that the command line's contract names and that this version doesn't have.
-constexpr std::string_view kNotBuilt[] = {"bond"};
-
 /// The edit that the field "edit" names, with its defaults.
 Result<Edit> blank_edit(const Json& json) {
   if (!json.is_object())
@@ -34,8 +31,6 @@ Result<Edit> blank_edit(const Json& json) {
     if (entry.name == wanted) return entry.blank;
     known.push_back(entry.name);
   }
-  if (std::find(std::begin(kNotBuilt), std::end(kNotBuilt), wanted) != std::end(kNotBuilt))
-    return fail("", "the edit " + in_quotes(wanted) + " isn't there yet in this version, which has: " + listed(known));
   return fail("", "there is no edit " + in_quotes(wanted) + "; the nearest is " + in_quotes(nearest_name(wanted, known)) +
                       " (known: " + listed(known) + ")");
 }

@@ -38,6 +38,7 @@ std::span<const EditKind> edit_kinds() {
         {"repair", mending, Repair{}},
         {"separate", EditGroup::contact, Separate{}},
         {"weld", joining, Weld{}},
+        {"bond", joining, Bond{}},
         {"repair_welds", joining, RepairWelds{}},
         {"replace_part", exchange, ReplacePart{}},
         {"undo", step, Undo{}},

@@ -37,7 +37,7 @@ struct Separated {
   double largest_move = 0;
 };
 
-/// A spot at which `weld` made no weld.
+/// A place at which `weld` made no weld, or `bond` no hexahedron.
 struct SpotLeft {
   std::array<double, 3> at{};
   std::string why;
@@ -47,6 +47,15 @@ struct Welded {
   std::size_t welds_added = 0;  ///< spots; of three sheets one has two elements
   std::size_t spots_left = 0;
   std::vector<SpotLeft> left_out;  ///< the first thousand of them
+};
+
+/// What `bond` did.
+struct Bonded {
+  std::size_t solids_added = 0;
+  std::size_t solids_left = 0;
+  std::vector<SpotLeft> left_out;  ///< the first thousand of them
+  double thinnest = 0;             ///< the least distance of opposite corners, and the greatest; deck's length unit
+  double thickest = 0;
 };
 
 /// A weld that `repair_welds` left as it is.
@@ -75,6 +84,7 @@ struct EditReport {
   std::optional<StoppedRepair> stopped;
   std::optional<Separated> separated;       ///< of `separate`
   std::optional<Welded> welded;             ///< of `weld`
+  std::optional<Bonded> bonded;             ///< of `bond`
   std::optional<WeldsMended> welds_mended;  ///< of `repair_welds`
   // of edits that move nodes:
   std::size_t inverted = 0;           ///< shells that it turned over or folded (docs/shaping.md)

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "mesh/document/dependents.h"
 #include "mesh/document/generation.h"
 
 namespace prismesh::mesh::document {

@@ -23,6 +23,7 @@ struct AddedElement {
 ElementCard wanted_card(const Model& model, const AddedElement& added, const IdOffsets& offsets) {
   const ElementBlock& block = *model.elements[static_cast<std::size_t>(added.element_class)];
   ElementCard card;
+  card.element_class = added.element_class;
   card.id = block.id[added.element] - offsets.element;
   if (const PartIndex part = block.part[added.element]; part.valid()) card.part = (*model.parts)[part.value].id - offsets.part;
   for (std::size_t n = block.first_node[added.element]; n < block.first_node[added.element + 1]; ++n)

@@ -14,7 +14,7 @@
 namespace prismesh::mesh::deck::lsdyna {
 namespace {
 
-constexpr std::array<int, 10> kBeamWidths = {8, 8, 8, 8, 8, 8, 8, 8, 8, 8};
+constexpr std::array<int, 10> kWrittenElementWidths = {8, 8, 8, 8, 8, 8, 8, 8, 8, 8};
 constexpr std::size_t kFirstNode = 2;
 constexpr std::size_t kThirdNode = 4;
 
@@ -36,10 +36,17 @@ struct Wanted {
   std::int64_t node_offset = 0;
 };
 
-bool has_nodes(std::string_view line, Columns columns, const Wanted& wanted) {
-  const FieldLine fields(line, kBeamWidths, columns);
+/// Whether a solid's card has ids only, so that its nodes stand on those that follow.
+bool has_ids_only(const FieldLine& fields) {
+  for (std::size_t n = kFirstNode; n < kWrittenElementWidths.size(); ++n)
+    if (!fields.is_blank_or_zero(n)) return false;
+  return true;
+}
+
+bool has_nodes(std::string_view line, Columns columns, std::size_t first, const Wanted& wanted) {
+  const FieldLine fields(line, kWrittenElementWidths, columns);
   for (std::size_t n = 0; n < wanted.nodes.size(); ++n)
-    if (whole_number(fields.text(kFirstNode + n)).value_or(0) + wanted.node_offset != wanted.nodes[n]) return false;
+    if (whole_number(fields.text(first + n)).value_or(0) + wanted.node_offset != wanted.nodes[n]) return false;
   return true;
 }
 
@@ -54,25 +61,52 @@ void search_block(std::string_view text, const Block& block, const CardForm& for
     const std::int64_t id = id_on(line.text, block.columns);
     largest = std::max(largest, id);
     std::size_t end = line.offset + line.text.size();
-    Line further;
-    for (int i = 0; i < form.extra_lines; ++i)
-      if (lines.next(further)) end = further.offset + further.text.size();
-    if (found || id != wanted.id || !has_nodes(line.text, block.columns, wanted)) continue;
+    int node_lines = form.node_lines;
+    if (form.kind == CardKind::solid && node_lines == 0 && has_ids_only(FieldLine(line.text, kWrittenElementWidths, block.columns)))
+      node_lines = 1;
+    Line nodes = line, further;
+    for (int i = 0; i < node_lines + form.extra_lines; ++i)
+      if (lines.next(further)) {
+        end = further.offset + further.text.size();
+        if (i == 0 && node_lines > 0) nodes = further;
+      }
+    if (found || id != wanted.id || !has_nodes(nodes.text, block.columns, node_lines > 0 ? 0 : kFirstNode, wanted)) continue;
     found = ElementPlace{0, line.offset, end, static_cast<std::uint16_t>(block.columns), 0};
     keyword = block.name;
   }
 }
 
+/// A solid's card with other numbers: the nodes stand on the line of the ids, or on the example's last line.
+std::string solid_like(std::string_view text, const ElementPlace& example, const ElementCard& element) {
+  const auto columns = static_cast<Columns>(example.style);
+  const std::size_t end = end_of_line(text, example.offset);
+  FieldLine ids(text.substr(example.offset, end - example.offset), kWrittenElementWidths, columns);
+  const bool ids_only = has_ids_only(ids);
+  ids.set(0, std::to_string(element.id));
+  const auto set_nodes = [&](FieldLine& line, std::size_t first) {
+    for (std::size_t n = 0; n < element.nodes.size(); ++n) line.set(first + n, std::to_string(element.nodes[n]));
+  };
+  if (!ids_only) {
+    set_nodes(ids, kFirstNode);
+    return ids.str();
+  }
+  const std::size_t begin = text.rfind('\n', example.end - 1) + 1;
+  FieldLine nodes(text.substr(begin, example.end - begin), kWrittenElementWidths, columns);
+  set_nodes(nodes, 0);
+  return ids.str() + std::string(text.substr(end, begin - end)) + nodes.str();
+}
+
 }  // namespace
 
 Result<ElementPlace> find_element(const Deck& deck, ElementClass element_class, std::int64_t id, std::span<const std::int64_t> nodes) {
-  if (element_class != ElementClass::beam)
-    return fail("", "can't be an example: of the elements other than shells this version adds beams to LS-DYNA decks");
+  if (element_class != ElementClass::beam && element_class != ElementClass::solid)
+    return fail("", "can't be an example: of the elements other than shells this version adds beams and solids to LS-DYNA decks");
+  const CardKind kind = element_class == ElementClass::solid ? CardKind::solid : CardKind::beam;
   Columns columns = Columns::standard;
   for (std::uint32_t file = 0; file < deck.files.size(); ++file) {
     const std::string_view text = deck.files[file].bytes.text();
     const IdOffsets offsets = deck.offsets_in(file).value_or(IdOffsets());
-    const Wanted wanted{CardKind::beam, id - offsets.element, nodes, offsets.node};
+    const Wanted wanted{kind, id - offsets.element, nodes, offsets.node};
     std::int64_t largest = 0;
     std::optional<ElementPlace> found;
     std::string keyword;
@@ -83,6 +117,8 @@ Result<ElementPlace> find_element(const Deck& deck, ElementClass element_class, 
     if (file == 0) columns = blocks.columns();
     if (!found) continue;
     if (has_word(keyword, "PID")) return fail("", "can't be an example: *" + keyword + " names the parts that each beam joins");
+    if (kind == CardKind::solid && keyword != "ELEMENT_SOLID")
+      return fail("", "can't be an example: *" + keyword + " gives a solid more than its nodes");
     found->file = file;
     found->last_in_file = largest;
     return *found;
@@ -91,8 +127,13 @@ Result<ElementPlace> find_element(const Deck& deck, ElementClass element_class, 
 }
 
 Result<WrittenCard> element_like(std::string_view text, const ElementPlace& example, const ElementCard& element) {
+  WrittenCard card;
+  if (element.element_class == ElementClass::solid) {
+    card.text = solid_like(text, example, element);
+    return card;
+  }
   const std::size_t end = end_of_line(text, example.offset);
-  FieldLine line(text.substr(example.offset, end - example.offset), kBeamWidths, static_cast<Columns>(example.style));
+  FieldLine line(text.substr(example.offset, end - example.offset), kWrittenElementWidths, static_cast<Columns>(example.style));
   if (!line.is_blank_or_zero(kThirdNode)) {
     const std::string_view third = line.text(kThirdNode);
     std::size_t same = 0;
@@ -103,7 +144,6 @@ Result<WrittenCard> element_like(std::string_view text, const ElementPlace& exam
   }
   line.set(0, std::to_string(element.id));
   for (std::size_t n = 0; n < element.nodes.size(); ++n) line.set(kFirstNode + n, std::to_string(element.nodes[n]));
-  WrittenCard card;
   card.text = line.str() + std::string(text.substr(end, example.end - end));
   return card;
 }
@@ -116,16 +156,16 @@ std::size_t end_of_cards(std::string_view text) {
 }
 
 Result<WrittenCard> new_element(std::string_view text, ElementClass element_class, const ElementCard& element) {
-  if (element_class != ElementClass::beam) return fail("", "isn't a beam");
+  if (element_class != ElementClass::beam && element_class != ElementClass::solid) return fail("", "is neither a beam nor a solid");
   Blocks blocks(text, Columns::standard);
   Block block;
   while (blocks.next(block)) {
   }
-  FieldLine line("", kBeamWidths, blocks.columns());
+  FieldLine line("", kWrittenElementWidths, blocks.columns());
   line.set(0, std::to_string(element.id));
   line.set(1, std::to_string(element.part));
   for (std::size_t n = 0; n < element.nodes.size(); ++n) line.set(kFirstNode + n, std::to_string(element.nodes[n]));
-  line.set(kThirdNode, "0");
+  if (element_class == ElementClass::beam) line.set(kThirdNode, "0");
   WrittenCard card;
   card.text = line.str();
   return card;

@@ -123,6 +123,37 @@ std::int64_t largest_of_width(int width) {
   return power - 1;
 }
 
+/// One number for a part, its section, its material and a set of parts, above all of the deck's and `largest`. Errors: none is left.
+Result<std::int64_t> number_of_part(const Deck& deck, const Model& model, std::int64_t largest, Columns columns) {
+  std::int64_t id = largest;
+  for (const Part& part : *model.parts) id = std::max({id, part.id, part.section.value_or(0), part.material.value_or(0)});
+  for (const Referred referred : {Referred::part, Referred::part_set})
+    for (const Reference& reference : deck.references->all(referred))
+      if (reference.first == reference.last) id = std::max(id, reference.last);
+  ++id;
+  const int width = field_width(10, columns);
+  // The part stands on the elements' cards too, whose fields are narrower.
+  if (id > largest_of_width(std::min(width, field_width(8, columns))))
+    return fail(deck.files[0].path.string(),
+                "no number is left for a new part, section, material and set: " + std::to_string(id) + " doesn't fit the fields");
+  // Ranges of parts say something of all that lie in them.
+  for (const Reference& reference : deck.references->naming(Referred::part, id))
+    return fail(deck.files[0].path.string(), "no number is left for a new part: the next, " + std::to_string(id) +
+                                                 ", lies in a range of parts of " +
+                                                 deck.references->referrers()[reference.referrer].keyword);
+
+  return id;
+}
+
+/// The set of the parts that are joined.
+void list_sheets(std::int64_t id, const std::vector<std::int64_t>& sheets, FieldText& cards) {
+  cards.keyword("SET_PART_LIST").id(id).end();
+  for (std::size_t s = 0; s < sheets.size(); ++s) {
+    cards.id(sheets[s]);
+    if ((s + 1) % kFieldsOfLine == 0 || s + 1 == sheets.size()) cards.end();
+  }
+}
+
 }  // namespace
 
 Result<std::pair<Part, std::string>> weld_part(const Deck& deck, const Model& model, const CardWriter::WeldPart& wanted) {
@@ -144,42 +175,48 @@ Result<std::pair<Part, std::string>> weld_part(const Deck& deck, const Model& mo
   if (!wanted.poissons_ratio) return unknown("Poisson's ratio", "poissons_ratio");
   if (!yield_stress) return unknown("yield stress", "yield_stress");
 
-  std::int64_t id = facts.largest_id;
-  for (const Part& part : *model.parts) id = std::max({id, part.id, part.section.value_or(0), part.material.value_or(0)});
-  for (const Referred referred : {Referred::part, Referred::part_set})
-    for (const Reference& reference : deck.references->all(referred))
-      if (reference.first == reference.last) id = std::max(id, reference.last);
-  ++id;
   const Columns columns = columns_of_main(deck);
-  const int width = field_width(10, columns);
-  // The part stands on the beams' cards too, whose fields are narrower.
-  if (id > largest_of_width(std::min(width, field_width(8, columns))))
-    return fail(deck.files[0].path.string(),
-                "no number is left for a new part, section, material and set: " + std::to_string(id) + " doesn't fit the fields");
-  // Ranges of parts say something of all that lie in them.
-  for (const Reference& reference : deck.references->naming(Referred::part, id))
-    return fail(deck.files[0].path.string(), "no number is left for a new part: the next, " + std::to_string(id) +
-                                                 ", lies in a range of parts of " +
-                                                 deck.references->referrers()[reference.referrer].keyword);
-
-  FieldText cards(static_cast<std::size_t>(width));
+  const Result<std::int64_t> number = number_of_part(deck, model, facts.largest_id, columns);
+  if (!number) return fail(number.error());
+  const std::int64_t id = *number;
+  FieldText cards(static_cast<std::size_t>(field_width(10, columns)));
   cards.keyword("PART").line("spot welds").id(id).id(id).id(id).end();
   cards.keyword("SECTION_BEAM").id(id).id(9).real(1).real(2).real(1).end();
   cards.real(wanted.diameter).real(wanted.diameter).real(0).real(0).end();
   cards.keyword("MAT_SPOTWELD");
   cards.id(id).real(*wanted.density).real(*wanted.youngs_modulus).real(*wanted.poissons_ratio).real(*yield_stress).real(0).end();
   cards.end();
-  cards.keyword("SET_PART_LIST").id(id).end();
-  for (std::size_t s = 0; s < wanted.sheets.size(); ++s) {
-    cards.id(wanted.sheets[s]);
-    if ((s + 1) % kFieldsOfLine == 0 || s + 1 == wanted.sheets.size()) cards.end();
-  }
+  list_sheets(id, wanted.sheets, cards);
   // The part of the welds (SSTYP 3) is tied to the set of the sheets' parts (MSTYP 2); the two cards behind are left at their defaults.
   cards.keyword("CONTACT_SPOTWELD").id(id).id(id).id(3).id(2).end().end().end();
 
   Part part;
   part.id = id;
   part.name = "spot welds";
+  part.defined = true;
+  part.section = part.material = id;
+  part.density = wanted.density;
+  part.youngs_modulus = wanted.youngs_modulus;
+  part.poissons_ratio = wanted.poissons_ratio;
+  return std::pair(std::move(part), cards.take());
+}
+
+Result<std::pair<Part, std::string>> bond_part(const Deck& deck, const Model& model, const CardWriter::BondPart& wanted) {
+  const Columns columns = columns_of_main(deck);
+  const Result<std::int64_t> number = number_of_part(deck, model, read_facts(deck, {}).largest_id, columns);
+  if (!number) return fail(number.error());
+  const std::int64_t id = *number;
+  FieldText cards(static_cast<std::size_t>(field_width(10, columns)));
+  cards.keyword("PART").line("adhesive").id(id).id(id).id(id).end();
+  cards.keyword("SECTION_SOLID").id(id).id(-1).end();
+  cards.keyword("MAT_ELASTIC").id(id).real(wanted.density).real(wanted.youngs_modulus).real(wanted.poissons_ratio).end();
+  list_sheets(id, wanted.sheets, cards);
+  // The nodes of the part (SSTYP 3) are tied to the set of the sheets' parts (MSTYP 2); the two cards behind are left at their defaults.
+  cards.keyword("CONTACT_TIED_NODES_TO_SURFACE_OFFSET").id(id).id(id).id(3).id(2).end().end().end();
+
+  Part part;
+  part.id = id;
+  part.name = "adhesive";
   part.defined = true;
   part.section = part.material = id;
   part.density = wanted.density;

@@ -115,13 +115,19 @@ class Writer : public CardWriter {
     return lsdyna::element_like(text, example, element);
   }
   std::size_t end_of_cards(std::string_view text) const override { return lsdyna::end_of_cards(text); }
-  Result<std::string> element_header(ElementClass) const override { return "*ELEMENT_BEAM"; }
+  Result<std::string> element_header(ElementClass element_class) const override {
+    return element_class == ElementClass::solid ? "*ELEMENT_SOLID" : "*ELEMENT_BEAM";
+  }
   Result<WrittenCard> new_element(std::string_view text, ElementClass element_class, const ElementCard& element) const override {
     return lsdyna::new_element(text, element_class, element);
   }
 
   Result<std::pair<Part, std::string>> weld_part(const Deck& deck, const Model& model, const WeldPart& wanted) const override {
     return lsdyna::weld_part(deck, model, wanted);
+  }
+
+  Result<std::pair<Part, std::string>> bond_part(const Deck& deck, const Model& model, const BondPart& wanted) const override {
+    return lsdyna::bond_part(deck, model, wanted);
   }
 
   std::int64_t largest_node_id(std::uint16_t style) const override {

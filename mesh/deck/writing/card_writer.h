@@ -131,6 +131,16 @@ class CardWriter {
   /// value isn't known, or the format has no such welds; a whole sentence.
   virtual Result<std::pair<Part, std::string>> weld_part(const Deck& deck, const Model& model, const WeldPart& wanted) const;
 
+  /// What a part of adhesive needs that no existing solid is an example for.
+  struct BondPart {
+    std::vector<std::int64_t> sheets;  ///< ids of the parts that it joins, ascending
+    double density = 0;                ///< of the adhesive; deck's units, here and below
+    double youngs_modulus = 0;
+    double poissons_ratio = 0;
+  };
+  /// As weld_part.
+  virtual Result<std::pair<Part, std::string>> bond_part(const Deck& deck, const Model& model, const BondPart& wanted) const;
+
   /// The largest id that fits the field.
   virtual std::int64_t largest_node_id(std::uint16_t style) const = 0;
   virtual std::int64_t largest_shell_id(std::uint16_t style) const = 0;

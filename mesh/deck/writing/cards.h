@@ -46,6 +46,7 @@ struct ElementPlace {
 
 /// A new element that is no shell; ids as in the file's text.
 struct ElementCard {
+  ElementClass element_class = ElementClass::beam;
   std::int64_t id = 0;
   std::int64_t part = 0;
   std::vector<std::int64_t> nodes;

@@ -160,10 +160,6 @@ TEST(EditJson, what_is_wrong_within_a_field_is_said) {
   for (const auto& [text, words] : cases) EXPECT_THAT(why_not(text), testing::StartsWith(words)) << text;
 }
 
-TEST(EditJson, what_is_not_there_yet_is_refused_by_name) {
-  EXPECT_THAT(why_not(R"({"edit":"bond","mode":"full"})"), HasSubstr("\"bond\" isn't there yet in this version"));
-}
-
 TEST(EditJson, axes_and_planes_are_checked_where_they_are_written) {
   EXPECT_EQ(why_not(R"({"edit":"rotate","point":[0,0,0],"axis":[0,0,0],"degrees":5})"),
             "rotate: \"axis\" must be a direction, not [0, 0, 0]");

@@ -42,7 +42,7 @@ TEST(EditKinds, groups_say_what_an_edit_changes) {
   EXPECT_THAT(names_of(EditGroup::shaping), ElementsAre("lift", "move", "rotate", "slide", "translate"));
   EXPECT_THAT(names_of(EditGroup::mending), ElementsAre("collapse", "merge", "relax", "repair", "split", "swap"));
   EXPECT_THAT(names_of(EditGroup::contact), ElementsAre("separate"));
-  EXPECT_THAT(names_of(EditGroup::joining), ElementsAre("repair_welds", "weld"));
+  EXPECT_THAT(names_of(EditGroup::joining), ElementsAre("bond", "repair_welds", "weld"));
   EXPECT_THAT(names_of(EditGroup::exchange), ElementsAre("replace_part"));
   EXPECT_THAT(names_of(EditGroup::step), ElementsAre("branch", "redo", "undo"));
 }
