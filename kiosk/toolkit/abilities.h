@@ -11,6 +11,7 @@
 #include "kiosk/panels/option_row.h"
 #include "kiosk/panels/panel_layout.h"
 #include "kiosk/panels/question.h"
+#include "kiosk/toolkit/handle_part.h"
 #include "kiosk/toolkit/pointer.h"
 #include "mesh/document/edit.h"
 
@@ -42,6 +43,8 @@ class HasHandle : public Ability {
  public:
   /// Which part of the handle a pixel is on; `picture`: none.
   virtual input::Under under(const input::Pixel& pixel) const = 0;
+  /// The part on a pixel that `under` finds something on: where it lies, and what dragging it does.
+  virtual HandlePart part_at(const input::Pixel& pixel) const = 0;
   /// The model is being pulled: no other preview or state may be shown.
   virtual bool pulling() const = 0;
 };

@@ -155,6 +155,11 @@ Under CuttingTool::under(const input::Pixel& pixel) const {
   return stereo::on_handle(toolkit::aim(context_.view), plane_->point, plane_->normal(), pixel) ? Under::cut_handle : Under::picture;
 }
 
+toolkit::HandlePart CuttingTool::part_at(const input::Pixel& pixel) const {
+  if (under(pixel) != Under::cut_handle) return {};
+  return {toolkit::arrow_line(toolkit::aim(context_.view), plane_->point, plane_->normal()), "drag: move the cut"};
+}
+
 bool CuttingTool::gesture(const input::Gesture& gesture) {
   const stereo::Aim aim = toolkit::aim(context_.view);
   if (const auto* taken = std::get_if<input::HandleTaken>(&gesture)) {

@@ -41,6 +41,7 @@ class CuttingTool final : public toolkit::Tool,
   bool takes_numbers(const toolkit::Pointer& pointer) const override;
   bool begin_number(const std::string& text, const toolkit::Pointer& pointer) override;
   input::Under under(const input::Pixel& pixel) const override;
+  toolkit::HandlePart part_at(const input::Pixel& pixel) const override;
   bool pulling() const override { return false; }
   bool dragging() const override { return drag_.has_value(); }
   void cancel_gesture() override;

@@ -10,6 +10,7 @@
 #include "kiosk/toolkit/picking.h"
 #include "kiosk/toolkit/tool_set.h"
 #include "kiosk/tools/shaping/falloff_direction.h"
+#include "kiosk/tools/shaping/handle_outline.h"
 #include "kiosk/tools/shaping/shaping_keys.h"
 #include "kiosk/tools/shaping/shaping_panel.h"
 #include "kiosk/tools/shaping/touch_words.h"
@@ -30,6 +31,16 @@ Use use_of(Under handle) {
     case Under::move_handle: return Use::ring;
     case Under::turn_handle: return Use::arc;
     default: return Use::arrow;
+  }
+}
+
+/// What dragging a part of the handle does.
+std::string drag_words(Under handle) {
+  switch (handle) {
+    case Under::slide_handle: return "drag: slide";
+    case Under::move_handle: return "drag: move";
+    case Under::turn_handle: return "drag: turn";
+    default: return "drag: lift";
   }
 }
 
@@ -94,6 +105,13 @@ bool ShapingTool::take_handle_gesture(const Gesture& gesture) {
 Under ShapingTool::under(const input::Pixel& pixel) const {
   const std::optional<render::Handle> shown = shown_handle();
   return shown && !pull_ && !context_.tools.in_mode() ? part_of_handle(toolkit::aim(context_.view), *shown, pixel) : Under::picture;
+}
+
+toolkit::HandlePart ShapingTool::part_at(const input::Pixel& pixel) const {
+  const std::optional<render::Handle> shown = shown_handle();
+  const Under part = under(pixel);
+  if (!shown || part == Under::picture) return {};
+  return {outline_of_part(toolkit::aim(context_.view), *shown, part), drag_words(part)};
 }
 
 std::optional<render::Handle> ShapingTool::shown_handle() const {

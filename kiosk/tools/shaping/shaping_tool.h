@@ -42,6 +42,7 @@ class ShapingTool final : public toolkit::Tool,
   std::string_view name() const override;
   void command(std::uint8_t number, const toolkit::Pointer& pointer) override;
   input::Under under(const input::Pixel& pixel) const override;
+  toolkit::HandlePart part_at(const input::Pixel& pixel) const override;
   bool gesture(const input::Gesture& gesture) override;
   bool takes_numbers(const toolkit::Pointer& pointer) const override;
   bool begin_number(const std::string& text, const toolkit::Pointer& pointer) override;

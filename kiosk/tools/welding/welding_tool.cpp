@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include <fmt/format.h>
@@ -238,12 +239,26 @@ std::optional<Pixel> WeldingTool::pixel_of(std::size_t line) const {
   return stereo::pixel_of(toolkit::aim(context_.view), middle);
 }
 
-Under WeldingTool::under(const Pixel& pixel) const {
-  if (!in_mode_ || !is_shown() || drag_) return Under::picture;
-  // Any but the first: the distance from that one sets the pitch.
+/// Any but the first: the distance from that one sets the pitch.
+std::optional<Pixel> WeldingTool::weld_at(const Pixel& pixel) const {
+  if (!in_mode_ || !is_shown() || drag_) return std::nullopt;
   for (std::size_t i = 1; i < std::min(wanted_->would->lines.size(), kMaxWeldsDrawn); ++i)
-    if (const auto at = pixel_of(i); at && (*at - pixel).norm() <= kGrabPixels) return Under::weld;
-  return Under::picture;
+    if (const auto at = pixel_of(i); at && (*at - pixel).norm() <= kGrabPixels) return at;
+  return std::nullopt;
+}
+
+Under WeldingTool::under(const Pixel& pixel) const { return weld_at(pixel) ? Under::weld : Under::picture; }
+
+toolkit::HandlePart WeldingTool::part_at(const Pixel& pixel) const {
+  const std::optional<Pixel> weld = weld_at(pixel);
+  if (!weld) return {};
+  constexpr int kSteps = 32;
+  std::vector<Pixel> rim;
+  for (int step = 0; step <= kSteps; ++step) {
+    const double angle = 2 * std::numbers::pi * step / kSteps;
+    rim.emplace_back(*weld + kGrabPixels * Pixel(std::cos(angle), std::sin(angle)));
+  }
+  return {{std::move(rim)}, "drag: set the pitch"};
 }
 
 bool WeldingTool::gesture(const input::Gesture& gesture) {

@@ -37,6 +37,7 @@ class WeldingTool final : public toolkit::Tool,
   void command(std::uint8_t number, const toolkit::Pointer& pointer) override;
   bool gesture(const input::Gesture& gesture) override;
   input::Under under(const input::Pixel& pixel) const override;
+  toolkit::HandlePart part_at(const input::Pixel& pixel) const override;
   bool pulling() const override { return false; }
   bool dragging() const override { return drag_.has_value(); }
   void cancel_gesture() override;
@@ -79,6 +80,7 @@ class WeldingTool final : public toolkit::Tool,
   double pitch() const;
   mesh::document::Weld edit() const;
   std::optional<input::Pixel> pixel_of(std::size_t line) const;
+  std::optional<input::Pixel> weld_at(const input::Pixel& pixel) const;
   void click(const input::Pixel& at);
   void ask();
   void set_pitch(double pitch);
