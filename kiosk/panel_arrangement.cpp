@@ -150,9 +150,12 @@ panels::StatusFacts status_facts(const ToolContext& context) {
   return facts;
 }
 
-/// What the pointer would take.
+/// What the pointer would take, or how far it has pulled something.
 void hand(const ToolContext& context, PanelLayout& layout) {
-  if (!context.hand.at || context.hand.on == input::Under::picture) return;
+  if (!context.hand.at) return;
+  for (const auto* tool : context.tools.with<toolkit::TellsLive>())
+    if (const std::string value = tool->value_at_hand(); !value.empty()) return panels::words_at_hand(value, *context.hand.at, layout);
+  if (context.hand.on == input::Under::picture) return;
   const toolkit::HandlePart part = context.tools.part_at(*context.hand.at);
   if (part.does.empty()) return;
   panels::highlight_part(part.lines, layout);

@@ -99,6 +99,8 @@ class GuardsEdits : public Ability {
 /// Asks the user before some edits.
 class HoldsEdits : public Ability {
  public:
+  /// Whether `hold` would ask the user.
+  virtual bool would_hold(const mesh::document::Edit& edit) const = 0;
   /// True: the edit must not be made now, as the user is asked first. If the user agrees, the tool sends it if `sends`; else the user makes
   /// it again.
   virtual bool hold(const mesh::document::Edit& edit, bool sends) = 0;
@@ -189,6 +191,8 @@ class HasOptions : public Ability {
 class TellsLive : public Ability {
  public:
   virtual std::string live_words() const = 0;
+  /// The value alone, which stands beside the pointer that pulls: "12.4 mm"; empty: no pointer does.
+  virtual std::string value_at_hand() const = 0;
 };
 
 class HasStatus : public Ability {

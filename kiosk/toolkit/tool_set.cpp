@@ -95,6 +95,10 @@ bool ToolSet::hold(const mesh::document::Edit& edit, bool sends) {
   return std::ranges::any_of(with<HoldsEdits>(), [&](HoldsEdits* tool) { return tool->hold(edit, sends); });
 }
 
+bool ToolSet::would_hold(const mesh::document::Edit& edit) const {
+  return std::ranges::any_of(with<HoldsEdits>(), [&](const HoldsEdits* tool) { return tool->would_hold(edit); });
+}
+
 void ToolSet::edit_begins() {
   for (GuardsEdits* tool : with<GuardsEdits>()) tool->edit_begins();
 }

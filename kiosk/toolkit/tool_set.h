@@ -44,6 +44,7 @@ class ToolSet {
   /// Does what a tool shows as a preview; false: none does.
   bool carry_out_preview();
   bool allow_edit();
+  bool would_hold(const mesh::document::Edit& edit) const;
   /// HoldsEdits::hold of the first tool that does.
   bool hold(const mesh::document::Edit& edit, bool sends);
   void watch(std::int64_t now_ns);

@@ -256,6 +256,8 @@ std::string CuttingTool::words() const {
 
 std::string CuttingTool::live_words() const { return drag_ && context_.shown.snapshot ? "Cut at " + words() : std::string(); }
 
+std::string CuttingTool::value_at_hand() const { return drag_ && context_.shown.snapshot ? words() : std::string(); }
+
 std::string CuttingTool::setting_words() const { return "Cut \u00b7 " + words(); }
 
 std::vector<toolkit::RailEntry> CuttingTool::rail() const {

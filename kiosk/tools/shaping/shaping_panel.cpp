@@ -109,9 +109,13 @@ std::optional<ShapingOptions> shaping_panel(const ShapingFacts& facts, PanelLayo
   return wanted != now ? std::optional(wanted) : std::nullopt;
 }
 
+std::string pull_value(const PullFacts& facts) {
+  return facts.degrees ? fmt::format("{:.2f}\u00b0", *facts.degrees) : length_text(facts.length, facts.length_unit);
+}
+
 std::string pull_words(const PullFacts& facts) {
-  const std::string by = facts.degrees ? fmt::format("{:.2f}\u00b0", *facts.degrees) : length_text(facts.length, facts.length_unit);
-  return fmt::format("{} {}   {} {}", facts.what, by, panels::grouped(facts.nodes), facts.nodes == 1 ? "node moves" : "nodes move");
+  return fmt::format("{} {}   {} {}", facts.what, pull_value(facts), panels::grouped(facts.nodes),
+                     facts.nodes == 1 ? "node moves" : "nodes move");
 }
 
 }  // namespace prismesh::kiosk::tools::shaping

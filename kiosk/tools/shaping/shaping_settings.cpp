@@ -84,6 +84,7 @@ bool ShapingTool::take_back() {
 void ShapingTool::set_falloff(const FalloffDirection& along) {
   if (picks_ == TwoNodes::falloff) axis_pick_.cancel();
   options_.along = along;
+  context_.follow_soon = true;
   const mesh::Vec3& way = along.direction;
   context_.trace.line(along.in_all() ? "falloff all ways"
                                      : fmt::format("falloff along {} {} {} {}", along.what, way.x(), way.y(), way.z()));

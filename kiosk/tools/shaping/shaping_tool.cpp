@@ -235,8 +235,7 @@ std::string ShapingTool::setting_words() const {
   return options_.keep_apart ? words + " \u00b7 parts kept apart" : words;
 }
 
-std::string ShapingTool::live_words() const {
-  if (!pull_) return {};
+PullFacts ShapingTool::pull_facts() const {
   PullFacts facts;
   facts.what = std::string(name_of(pull_->pull.handle()));
   facts.length_unit = context_.shown.snapshot->info().length_unit;
@@ -246,7 +245,13 @@ std::string ShapingTool::live_words() const {
     default: facts.length = pulled_.by.norm(); break;
   }
   if (const link::RunningDrag* drag = context_.link.drag.running(); drag != nullptr && drag->begun()) facts.nodes = drag->facts().nodes;
-  return pull_words(facts);
+  return facts;
+}
+
+std::string ShapingTool::live_words() const { return pull_ && context_.shown.snapshot ? pull_words(pull_facts()) : std::string(); }
+
+std::string ShapingTool::value_at_hand() const {
+  return dragging() && !pull_->typed && !is_typing() && context_.shown.snapshot ? pull_value(pull_facts()) : std::string();
 }
 
 void ShapingTool::draw_dialog(int, bool opened, PanelLayout& layout) {
@@ -259,8 +264,11 @@ void ShapingTool::draw_dialog(int, bool opened, PanelLayout& layout) {
   facts.hint = pull ? typed_hint(handle_, typed_direction()) : "a number; nothing takes it away";
   facts.begun = typing_.begun;
   facts.problem = typing_.problem;
+  if (pull) facts.at = typing_.at;
   if (const std::optional<std::string> entered = panels::number_box(facts, layout.view(), opened, entry_))
     layout.ask([this, text = *entered] { enter_number(text); });
+  else if (pull && wants_preview(entry_.text))
+    layout.ask([this, text = entry_.text] { preview_number(text); });
 }
 
 }  // namespace prismesh::kiosk::tools::shaping

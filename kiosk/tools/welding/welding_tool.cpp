@@ -377,6 +377,8 @@ std::string WeldingTool::live_words() const {
   return fmt::format("Pitch {}, {}", pitch_words(), counted(wanted_->would->line_count, "weld"));
 }
 
+std::string WeldingTool::value_at_hand() const { return drag_ && is_shown() ? pitch_words() : std::string(); }
+
 std::vector<toolkit::RailEntry> WeldingTool::rail() const {
   return {{toolkit::RailPlace::weld, "Weld", &key_of(WeldingCommand::take_in_hand), context_.open.in_hand == this}};
 }

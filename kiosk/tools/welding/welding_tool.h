@@ -56,6 +56,7 @@ class WeldingTool final : public toolkit::Tool,
   void draw_options(panels::OptionRow& row) override;
   std::string setting_words() const override;
   std::string live_words() const override;
+  std::string value_at_hand() const override;
   void draw_dialog(int kind, bool opened, panels::PanelLayout& layout) override;
 
  private:
