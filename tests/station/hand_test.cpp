@@ -235,6 +235,26 @@ TEST_F(HandTest, the_part_below_the_pointer_is_highlighted_and_named_and_no_scen
   EXPECT_EQ(station_->kiosk().last("scenes "), scenes) << "what is highlighted lies over the picture";
 }
 
+TEST_F(HandTest, a_rigid_pull_moves_all_selected_nodes_alike) {
+  start_with_sheet();
+  const std::vector<std::int64_t> selected = station_->select_middle();
+  station_->key("t");
+  station_->settled_aim();
+  ASSERT_TRUE(station_->item("option moves").has_value());
+  EXPECT_EQ(station_->item("option moves")->state, "falloff");
+  station_->click_item("option moves");
+  station_->settled_aim();
+  EXPECT_EQ(station_->item("option moves")->state, "rigid");
+  station_->show_people("rigid");
+  pull_ring(60, 25);
+  let_go();
+  const std::map<std::int64_t, Point> after = nodes_of_deck(station_->save_copy("rigid.k"));
+  const Point &first = nodes_.at(selected.front()), &moved = after.at(selected.front());
+  EXPECT_GT(std::hypot(moved[0] - first[0], moved[1] - first[1], moved[2] - first[2]), 1);
+  for (const std::int64_t id : selected)
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(after.at(id)[i] - nodes_.at(id)[i], moved[i] - first[i], 1e-4) << "node " << id;
+}
+
 TEST_F(HandTest, undo_takes_a_move_by_the_ring_back) {
   start_with_sheet();
   station_->select_middle();

@@ -70,6 +70,7 @@ void direction_rows(const FalloffDirection& now, PanelLayout& layout) {
 ShapingOptions falloff_section(const ShapingOptions& now, PanelLayout& layout) {
   ShapingOptions wanted = now;
   section("Falloff");
+  set_by("moves", is_rigid(now) ? "rigid" : "falloff", ShapingCommand::rigid, layout);
   ImGui::SetNextItemWidth(-1);
   if (ImGui::BeginCombo("##profile", std::string(name(now.profile)).c_str())) {
     for (int i = 0; i <= static_cast<int>(Profile::gaussian); ++i)

@@ -107,6 +107,7 @@ void ShapingTool::change_option(ShapingCommand command) {
   using mesh::shape::Origin;
   using mesh::shape::Profile;
   switch (command) {
+    case ShapingCommand::rigid: turn_rigid(options_); break;
     case ShapingCommand::falloff:
       options_.profile = static_cast<Profile>((static_cast<int>(options_.profile) + 1) % (static_cast<int>(Profile::gaussian) + 1));
       break;

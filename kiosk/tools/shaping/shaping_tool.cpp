@@ -217,7 +217,8 @@ void ShapingTool::draw_options(panels::OptionRow& row) {
   const std::string& unit = context_.shown.snapshot->info().length_unit;
   const bool grab_alone =
       options_.profile != mesh::shape::Profile::constant && options_.flat == 0 && options_.origin == mesh::shape::Origin::grab;
-  row.value("falloff", std::string(mesh::shape::name(options_.profile)) + (grab_alone ? " from the grab" : ""),
+  row.value("moves", is_rigid(options_) ? "rigid" : "falloff", key(ShapingCommand::rigid));
+  row.value("profile", std::string(mesh::shape::name(options_.profile)) + (grab_alone ? " from the grab" : ""),
             key(ShapingCommand::falloff));
   row.value("mirror",
             options_.symmetry == DeckAxis::none ? "off" : std::string(kDeckAxisNames[static_cast<std::size_t>(options_.symmetry)]),
