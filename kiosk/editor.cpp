@@ -59,6 +59,13 @@ void Editor::point_at(const Pointer& pointer) {
   if (!same) ++context_.changes;
 }
 
+void Editor::hover(const Pointer& pointer, bool follows) {
+  const bool takes = pointer && !follows && !tools_.dragging() && !dialog_open() && context_.shown.snapshot;
+  const toolkit::HandPlace now{pointer, takes ? tools_.under(*pointer) : input::Under::picture};
+  const toolkit::HandPlace before = std::exchange(context_.hand, now);
+  if (now != before && (now.on != input::Under::picture || before.on != input::Under::picture)) ++context_.changes;
+}
+
 void Editor::pointer_moved(const Pixel& at) {
   constexpr double kLeavesPixels = 40;  ///< farther from where it was the pointer looks at something else than the edit
   pointer_ = at;

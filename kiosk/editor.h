@@ -40,6 +40,9 @@ class Editor {
   void set_room(const render::PixelRect& room);
   /// Where the pointer rests; none: beside the model. Finds what is under it.
   void point_at(const toolkit::Pointer& pointer);
+  /// Where the pointer is on the picture, in each turn of the loop. `follows`: it drags the view, or something else takes it. Where a
+  /// handle is below it, or follows it, the panels change.
+  void hover(const toolkit::Pointer& pointer, bool follows);
   /// On its way, on panels too.
   void pointer_moved(const input::Pixel& at);
   /// What the next picture is drawn for. Depth follows.

@@ -12,6 +12,7 @@
 #include "kiosk/input/key_table.h"
 #include "kiosk/panels/document_panel.h"
 #include "kiosk/panels/frame_panels.h"
+#include "kiosk/panels/hand_marks.h"
 #include "kiosk/panels/key_panels.h"
 #include "kiosk/panels/message_panels.h"
 #include "kiosk/panels/question_box.h"
@@ -149,6 +150,18 @@ panels::StatusFacts status_facts(const ToolContext& context) {
   return facts;
 }
 
+/// What the pointer would take, or how far it has pulled something.
+void hand(const ToolContext& context, PanelLayout& layout) {
+  if (!context.hand.at) return;
+  for (const auto* tool : context.tools.with<toolkit::TellsLive>())
+    if (const std::string value = tool->value_at_hand(); !value.empty()) return panels::words_at_hand(value, *context.hand.at, layout);
+  if (context.hand.on == input::Under::picture) return;
+  const toolkit::HandlePart part = context.tools.part_at(*context.hand.at);
+  if (part.does.empty()) return;
+  panels::highlight_part(part.lines, layout);
+  panels::words_at_hand(part.does, *context.hand.at, layout);
+}
+
 void cover(ToolContext& context, std::span<const input::MouseBinding> mouse, PanelLayout& layout) {
   switch (context.open.cover) {
     case Cover::none: break;
@@ -200,6 +213,7 @@ void PanelArrangement::build(ToolContext& context, std::span<const input::MouseB
   const bool box = context.tools.asking() != nullptr || context.open.dialog.owner != nullptr;
   if (document && connection.connected())
     for (auto* tool : context.tools.with<toolkit::DrawsOverPicture>()) tool->draw_over_picture(layout);
+  if (document && connection.connected()) hand(context, layout);
   if (!connection.connected() || ((!document || !progress.words().empty()) && !box))
     panels::state_panel({connection.connected(), connection.socket().string(), progress.words(), progress.fraction()},
                         input::binding_of(key_bindings(), tools::files::open_command()), layout);

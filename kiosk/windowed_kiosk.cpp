@@ -55,6 +55,8 @@ Result<void> WindowedKiosk::run() {
     if (Result<void> turned = station_.turn(); !turned) return turned;
     if (const auto& model = station_.link.document.snapshot()) watch_.draws(model->shell_count());
     point();
+    station_.editor.hover(gestures_.dragging() ? gestures_.position() : pointer_on_picture(),
+                          gestures_.dragging() || station_.screen.gui().popup_open());
     if (held_ && station_.clock.now_ns() >= held_->fires_ns)
       if (Result<void> fired = fire_held(); !fired) return fired;
     const Result<bool> drawn = beat();
@@ -309,6 +311,8 @@ Result<void> WindowedKiosk::show(Screen::Pace pace) {
   const char* const paces[] = {"at rest", "moving", "waiting"};
   const double took_ms = static_cast<double>(station_.clock.now_ns() - begun_ns) * 1e-6;
   station_.trace.line(fmt::format("drawn {} in {:.1f} ms", paces[static_cast<std::size_t>(pace)], took_ms));
+  if (const std::size_t scenes = station_.renderer->figures().scenes_drawn; scenes != std::exchange(traced_scenes_, scenes))
+    station_.trace.line(fmt::format("scenes {}", scenes));
   trace_picture();
   return {};
 }

@@ -77,6 +77,7 @@ class WindowedKiosk {
   std::int64_t longest_ns_ = 0;           ///< between two looks, since it was last told
   std::uint64_t shown_changes_ = 0;
   std::uint64_t pictures_ = 0;
+  std::size_t traced_scenes_ = 0;             ///< pictures for which the model was drawn
   std::uint64_t presses_ = 0, releases_ = 0;  ///< of buttons; a step of the wheel is a press
   bool rest_traced_ = false;                  ///< no event and no picture since
   PictureWatch watch_{reports_to_supervisor()};

@@ -11,6 +11,7 @@
 #include "kiosk/panels/option_row.h"
 #include "kiosk/panels/panel_layout.h"
 #include "kiosk/panels/question.h"
+#include "kiosk/toolkit/handle_part.h"
 #include "kiosk/toolkit/pointer.h"
 #include "mesh/document/edit.h"
 
@@ -42,6 +43,8 @@ class HasHandle : public Ability {
  public:
   /// Which part of the handle a pixel is on; `picture`: none.
   virtual input::Under under(const input::Pixel& pixel) const = 0;
+  /// The part on a pixel that `under` finds something on: where it lies, and what dragging it does.
+  virtual HandlePart part_at(const input::Pixel& pixel) const = 0;
   /// The model is being pulled: no other preview or state may be shown.
   virtual bool pulling() const = 0;
 };
@@ -96,6 +99,8 @@ class GuardsEdits : public Ability {
 /// Asks the user before some edits.
 class HoldsEdits : public Ability {
  public:
+  /// Whether `hold` would ask the user.
+  virtual bool would_hold(const mesh::document::Edit& edit) const = 0;
   /// True: the edit must not be made now, as the user is asked first. If the user agrees, the tool sends it if `sends`; else the user makes
   /// it again.
   virtual bool hold(const mesh::document::Edit& edit, bool sends) = 0;
@@ -186,6 +191,8 @@ class HasOptions : public Ability {
 class TellsLive : public Ability {
  public:
   virtual std::string live_words() const = 0;
+  /// The value alone, which stands beside the pointer that pulls: "12.4 mm"; empty: no pointer does.
+  virtual std::string value_at_hand() const = 0;
 };
 
 class HasStatus : public Ability {

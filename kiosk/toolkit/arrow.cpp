@@ -11,6 +11,12 @@ bool points_at_viewer(const stereo::Aim& aim, const mesh::Vec3& at, const mesh::
   return !foot || !tip || (*tip - *foot).norm() < 2 * render::kHandleRingPixels;
 }
 
+std::vector<std::vector<input::Pixel>> arrow_line(const stereo::Aim& aim, const mesh::Vec3& at, const mesh::Vec3& direction) {
+  const std::optional<input::Pixel> foot = stereo::pixel_of(aim, at), tip = stereo::pixel_of(aim, stereo::handle_tip(aim, at, direction));
+  if (!foot || !tip) return {};
+  return {{*foot, *tip}};
+}
+
 ArrowPull::ArrowPull(const stereo::Aim& aim, const mesh::Vec3& at, const mesh::Vec3& direction, const input::Pixel& pixel)
     : at_(at), direction_(direction) {
   hold(aim, pixel, 0);

@@ -1,6 +1,8 @@
 // An arrow that is pulled along its length: where the pointer brings it.
 #pragma once
 
+#include <vector>
+
 #include "kiosk/input/gestures.h"
 #include "kiosk/stereo/pointer.h"
 
@@ -8,6 +10,9 @@ namespace prismesh::kiosk::toolkit {
 
 /// Whether the arrow of a handle is so foreshortened that it can't be followed along its length: then it is pulled by moving upward.
 bool points_at_viewer(const stereo::Aim& aim, const mesh::Vec3& at, const mesh::Vec3& direction);
+
+/// The arrow's line in the picture, from foot to tip: no line if it is behind the eye.
+std::vector<std::vector<input::Pixel>> arrow_line(const stereo::Aim& aim, const mesh::Vec3& at, const mesh::Vec3& direction);
 
 /// One pull of an arrow, from taking it to letting it go.
 class ArrowPull {

@@ -20,6 +20,7 @@ void toggle_in_hand(ToolContext& context, Tool* tool) { take_in_hand(context, co
 
 void open_dialog(ToolContext& context, HasDialogs* owner, int kind) {
   context.open.dialog = {owner, kind};
+  context.follow_soon = true;
   set_cover(context, Cover::none);
 }
 

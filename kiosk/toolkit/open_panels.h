@@ -12,7 +12,11 @@ void toggle_in_hand(ToolContext& context, Tool* tool);
 
 /// Opens a dialog of the tool in the place of the one that is open, and closes what covers the panels.
 void open_dialog(ToolContext& context, HasDialogs* owner, int kind = 0);
-inline void close_dialog(ToolContext& context) { context.open.dialog = {}; }
+/// Its owner follows.
+inline void close_dialog(ToolContext& context) {
+  context.open.dialog = {};
+  context.follow_soon = true;
+}
 
 /// Shows that over the view. The deck's warnings count as read when they are shown.
 void set_cover(ToolContext& context, Cover cover);

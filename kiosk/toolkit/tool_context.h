@@ -39,6 +39,13 @@ struct PointedAt {
   std::string words;                      ///< "node 17 (1.2 3.4 5.6) mm   shell 4   part 2 Sill"; empty: nothing is
 };
 
+/// Where the pointer is, also on its way.
+struct HandPlace {
+  std::optional<input::Pixel> at;           ///< none: on a panel, or beside the window
+  input::Under on = input::Under::picture;  ///< the part of a handle that a press would take
+  bool operator==(const HandPlace&) const = default;
+};
+
 /// The selection as the next gesture meets it.
 struct SelectionFocus {
   std::optional<mesh::NodeIndex> last_clicked;
@@ -89,6 +96,7 @@ struct ToolContext {
   ShownModel shown{};
   SelectionFocus selection{};
   PointedAt pointed{};
+  HandPlace hand{};
   OpenPanels open{};
   std::size_t glyphs_left_out = 0;  ///< glyphs that the last picture had no room for
   std::uint64_t changes = 0;        ///< counts up with each change of the picture or the panels

@@ -25,12 +25,22 @@ void ToolSet::gesture(const input::Gesture& gesture) {
       if (each.gestures != nullptr && each.in_mode() == mode && each.gestures->gesture(gesture)) return;
 }
 
-Under ToolSet::under(const input::Pixel& pixel) const {
-  // The last tool's first: where the arrow of a cut lies on the handle of a pull, the one that only looks is taken.
+/// The last tool's first: where the arrow of a cut lies on the handle of a pull, the one that only looks is taken.
+const HasHandle* ToolSet::handle_at(const input::Pixel& pixel) const {
   const auto& tools = with<HasHandle>();
   for (auto tool = tools.rbegin(); tool != tools.rend(); ++tool)
-    if (const Under under = (*tool)->under(pixel); under != Under::picture) return under;
-  return Under::picture;
+    if ((*tool)->under(pixel) != Under::picture) return *tool;
+  return nullptr;
+}
+
+Under ToolSet::under(const input::Pixel& pixel) const {
+  const HasHandle* tool = handle_at(pixel);
+  return tool != nullptr ? tool->under(pixel) : Under::picture;
+}
+
+HandlePart ToolSet::part_at(const input::Pixel& pixel) const {
+  const HasHandle* tool = handle_at(pixel);
+  return tool != nullptr ? tool->part_at(pixel) : HandlePart{};
 }
 
 AsksQuestions* ToolSet::asking() const {
@@ -83,6 +93,10 @@ bool ToolSet::allow_edit() { return std::ranges::all_of(with<GuardsEdits>(), &Gu
 
 bool ToolSet::hold(const mesh::document::Edit& edit, bool sends) {
   return std::ranges::any_of(with<HoldsEdits>(), [&](HoldsEdits* tool) { return tool->hold(edit, sends); });
+}
+
+bool ToolSet::would_hold(const mesh::document::Edit& edit) const {
+  return std::ranges::any_of(with<HoldsEdits>(), [&](const HoldsEdits* tool) { return tool->would_hold(edit); });
 }
 
 void ToolSet::edit_begins() {

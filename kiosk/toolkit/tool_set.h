@@ -27,6 +27,8 @@ class ToolSet {
   /// Offers a gesture: first to the tools in a mode.
   void gesture(const input::Gesture& gesture);
   input::Under under(const input::Pixel& pixel) const;
+  /// HasHandle::part_at of the tool whose part `under` finds; no lines and no words: there is none.
+  HandlePart part_at(const input::Pixel& pixel) const;
   /// The tool that asks a question; null: none does.
   AsksQuestions* asking() const;
 
@@ -42,6 +44,7 @@ class ToolSet {
   /// Does what a tool shows as a preview; false: none does.
   bool carry_out_preview();
   bool allow_edit();
+  bool would_hold(const mesh::document::Edit& edit) const;
   /// HoldsEdits::hold of the first tool that does.
   bool hold(const mesh::document::Edit& edit, bool sends);
   void watch(std::int64_t now_ns);
@@ -59,6 +62,8 @@ class ToolSet {
   std::string guidance() const;
 
  private:
+  /// Null: no handle is there.
+  const HasHandle* handle_at(const input::Pixel& pixel) const;
   /// A tool, with the abilities that its mode gives priority to.
   struct Moded {
     Tool* tool = nullptr;

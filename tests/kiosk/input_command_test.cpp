@@ -115,6 +115,7 @@ TEST(KeysTest, rows_keep_the_order_of_help_and_menu) {
                                              "Shift+Z",
                                              "Shift+D",
                                              "T",
+                                             "Ctrl+Shift+R",
                                              "D",
                                              "Ctrl+Up",
                                              "Ctrl+Down",

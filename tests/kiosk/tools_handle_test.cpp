@@ -1,11 +1,13 @@
 // Position of the handle on the selection; its displacement follows the pointer's.
 #include "kiosk/tools/shaping/handle.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
 #include "kiosk/toolkit/arrow.h"
+#include "kiosk/tools/shaping/handle_outline.h"
 #include "kiosk/tools/shaping/shaping_options.h"
 
 namespace prismesh::kiosk::tools::shaping {
@@ -272,6 +274,50 @@ TEST(HandleTest, the_ring_moves_in_the_screens_plane_under_the_pointer) {
   const Vec3 by = pull.at(aim, taken + Pixel(40, 25)).by;
   EXPECT_NEAR(by.y(), 0, 1e-9);  // front looks along +y
   EXPECT_NEAR((*stereo::pixel_of(aim, at + by) - (foot + Pixel(40, 25))).norm(), 0, 1e-6);
+}
+
+TEST(HandleOutlineTest, what_is_highlighted_is_what_a_press_takes) {
+  const render::Handle handle = handle_at(Vec3(40, 40, 0), Vec3(0, 0, 1));
+  for (const char* view : {"iso", "front", "top"})
+    for (const Under part : {Under::lift_handle, Under::slide_handle, Under::move_handle}) {
+      if (part == Under::slide_handle && view == std::string("front")) continue;  // seen from its edge
+      if (part == Under::move_handle && view == std::string("top")) continue;     // the arrow is in front of it
+      const stereo::Aim aim = aim_from(view);
+      const Pixel foot = *stereo::pixel_of(aim, handle.at);
+      int taken = 0, points = 0;
+      for (const std::vector<Pixel>& line : outline_of_part(aim, handle, part))
+        for (std::size_t i = 0; i + 1 < line.size(); ++i)
+          for (double share = 0; share < 1; share += 0.125, ++points) {
+            Pixel at = line[i] + share * (line[i + 1] - line[i]);
+            at += 1e-3 * (foot - at);  // a rim's pixel is on neither side
+            const Under found = part_of_handle(aim, handle, at);
+            EXPECT_NE(found, Under::picture) << view << " at " << at.transpose();
+            taken += found == part ? 1 : 0;
+          }
+      ASSERT_GT(points, 0) << view;
+      EXPECT_GT(taken, points / 2) << view << " part " << static_cast<int>(part);
+    }
+}
+
+TEST(HandleOutlineTest, an_axis_has_its_circle_and_its_ball_and_the_arrow_ends_at_its_tip) {
+  const stereo::Aim aim = aim_from("iso");
+  render::Handle handle = handle_at(Vec3(60, 40, 0), Vec3(0, 0, 1));
+  const auto arrow = outline_of_part(aim, handle, Under::lift_handle);
+  ASSERT_EQ(arrow.size(), 1U);
+  EXPECT_EQ(arrow[0].back(), *stereo::pixel_of(aim, stereo::handle_tip(aim, handle.at, handle.direction)));
+  EXPECT_TRUE(outline_of_part(aim, handle, Under::turn_handle).empty()) << "there is no axis";
+  handle.turn = render::Handle::Turn{Vec3(40, 40, 0), Vec3(0, 0, 1), 0};
+  const auto lines = outline_of_part(aim, handle, Under::turn_handle);
+  ASSERT_EQ(lines.size(), 2U);
+  for (const auto& line : lines)
+    for (const Pixel& at : line) EXPECT_EQ(part_of_handle(aim, handle, at), Under::turn_handle);
+  const Pixel opposite = *stereo::pixel_of(aim, Vec3(20, 40, 0));
+  double nearest = 1e9;
+  for (const Pixel& at : lines[0]) nearest = std::min(nearest, (at - opposite).norm());
+  EXPECT_LT(nearest, 1e-6) << "the circle goes all about the axis";
+  // Behind the eye.
+  EXPECT_TRUE(outline_of_part(aim, handle_at(stereo::to_deck(aim.view, Vec3(0, 0, 2 * aim.eye_mm.z())), Vec3(0, 0, 1)), Under::move_handle)
+                  .empty());
 }
 
 }  // namespace

@@ -58,6 +58,20 @@ TEST(ShapingOptionsTest, every_option_stands_in_the_edit) {
   EXPECT_EQ(std::get<document::Translate>(typed).by, Vec3(1, 2, 3));
 }
 
+TEST(ShapingOptionsTest, rigid_pulls_are_left_for_the_falloff_of_before) {
+  ShapingOptions options;
+  options.profile = mesh::shape::Profile::sharp;
+  turn_rigid(options);
+  EXPECT_TRUE(is_rigid(options));
+  const document::Edit edit = edit_of({Under::lift_handle, 17}, options, Pull{Vec3::Zero(), 2, 0});
+  EXPECT_EQ(std::get<document::Lift>(edit).shaping.weights.falloff.profile, mesh::shape::Profile::constant);
+  turn_rigid(options);
+  EXPECT_EQ(options.profile, mesh::shape::Profile::sharp);
+  options.profile = mesh::shape::Profile::constant;  // by D or the list
+  turn_rigid(options);
+  EXPECT_FALSE(is_rigid(options));
+}
+
 TEST(ShapingOptionsTest, each_part_of_the_handle_has_its_edit) {
   const Axis axis{Vec3(1, 2, 3), Vec3(0, 0, 1)};
   const auto kind = [&](Under handle) {

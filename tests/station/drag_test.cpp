@@ -66,6 +66,29 @@ TEST_F(DragTest, a_lift_by_the_pointer_changes_the_selected_nodes_lines_only) {
   EXPECT_EQ(whole_file(station_->deck()), original_) << "saving elsewhere must leave the deck alone";
 }
 
+TEST_F(DragTest, the_value_stands_beside_the_pointer_and_a_digit_opens_the_box_there) {
+  const std::vector<std::int64_t> selected = station_->select_middle();
+  station_->pull_arrow(60);
+  station_->settled_aim();
+  const auto value = station_->item("hand"), status = station_->item("status pointed");
+  ASSERT_TRUE(value.has_value() && status.has_value());
+  EXPECT_EQ(status->state.find("Lift " + value->state), 0U) << status->state << " but " << value->state;
+  EXPECT_GT(std::stod(value->state), 1);
+  station_->show_people("value_at_hand");
+  station_->kiosk().skip_lines();
+  station_->type("7");
+  ASSERT_FALSE(station_->kiosk().wait_for("drag shown ").empty()) << "7 is shown before Enter";
+  station_->settled_aim();
+  EXPECT_FALSE(station_->item("hand").has_value()) << "the box stands there now";
+  EXPECT_EQ(station_->item("status pointed")->state.find("Lift 7\u00a0mm"), 0U) << station_->item("status pointed")->state;
+  station_->show_people("box_at_hand");
+  station_->key("Return");
+  EXPECT_EQ(station_->kiosk().wait_for("typed "), "typed Lift 7");
+  ASSERT_FALSE(station_->kiosk().wait_for("drag committed").empty());
+  station_->release();
+  expect_lifted(station_->save_copy("typed.k"), selected);
+}
+
 TEST_F(DragTest, save_writes_the_deck_itself) {
   const std::vector<std::int64_t> selected = station_->select_middle();
   station_->pull_arrow(40);

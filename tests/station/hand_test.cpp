@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <set>
 #include <thread>
+#include <tuple>
 
 #include <gtest/gtest.h>
 
@@ -189,6 +190,69 @@ TEST_F(HandTest, the_ring_moves_the_selection_in_the_plane_of_the_screen) {
     }
   }
   EXPECT_NEAR(farthest, std::hypot(60, 25), 2) << "the grab follows the pointer";
+}
+
+TEST_F(HandTest, the_part_below_the_pointer_is_highlighted_and_named_and_no_scene_is_drawn_for_it) {
+  start_with_sheet();
+  station_->select_middle();
+  station_->settled_aim();
+  const auto at = station_->handle();
+  ASSERT_TRUE(at.has_value());
+  const std::string scenes = station_->kiosk().last("scenes ");
+  ASSERT_FALSE(scenes.empty());
+  const Pixel foot{at->foot_x, at->foot_y}, tip{at->tip_x, at->tip_y};
+  const double length = distance(foot, tip);
+  const Pixel along{(tip[0] - foot[0]) / length, (tip[1] - foot[1]) / length};
+  const auto green = [&](const Pixel& pixel) {
+    const Station::Pixels picture = station_->window_pixels();
+    const auto first =
+        3 * (static_cast<std::size_t>(pixel[1]) * static_cast<std::size_t>(picture.width) + static_cast<std::size_t>(pixel[0]));
+    const auto value = [&](std::size_t c) { return static_cast<int>(static_cast<unsigned char>(picture.rgb[first + c])); };
+    return value(1) - (value(0) + value(2)) / 2;
+  };
+  const Pixel middle{foot[0] + 0.6 * (tip[0] - foot[0]), foot[1] + 0.6 * (tip[1] - foot[1])};
+  const int before = green(middle);
+  const std::tuple<const char*, const char*, Pixel> parts[] = {
+      {"drag: lift", "hand_lift", tip},
+      {"drag: move", "hand_move", {foot[0] - 7 * along[0], foot[1] - 7 * along[1]}},
+      {"drag: slide", "hand_slide", {foot[0] - 22 * along[1], foot[1] + 22 * along[0]}}};
+  for (const auto& [words, name, pixel] : parts) {
+    station_->move(pixel[0], pixel[1]);
+    station_->settled_aim();
+    const auto said = station_->item("hand");
+    ASSERT_TRUE(said.has_value()) << words;
+    EXPECT_EQ(said->state, words);
+    if (words == std::string("drag: lift")) {
+      EXPECT_GT(green(middle), before + 40) << "the whole arrow is lit";
+    }
+    station_->show_people(name);
+  }
+  const Station::Item view = *station_->item("view");
+  station_->move(view.x + 8, view.y + 8);
+  station_->settled_aim();
+  EXPECT_FALSE(station_->item("hand").has_value());
+  EXPECT_NEAR(green(middle), before, 3);
+  EXPECT_EQ(station_->kiosk().last("scenes "), scenes) << "what is highlighted lies over the picture";
+}
+
+TEST_F(HandTest, a_rigid_pull_moves_all_selected_nodes_alike) {
+  start_with_sheet();
+  const std::vector<std::int64_t> selected = station_->select_middle();
+  station_->key("t");
+  station_->settled_aim();
+  ASSERT_TRUE(station_->item("option moves").has_value());
+  EXPECT_EQ(station_->item("option moves")->state, "falloff");
+  station_->click_item("option moves");
+  station_->settled_aim();
+  EXPECT_EQ(station_->item("option moves")->state, "rigid");
+  station_->show_people("rigid");
+  pull_ring(60, 25);
+  let_go();
+  const std::map<std::int64_t, Point> after = nodes_of_deck(station_->save_copy("rigid.k"));
+  const Point &first = nodes_.at(selected.front()), &moved = after.at(selected.front());
+  EXPECT_GT(std::hypot(moved[0] - first[0], moved[1] - first[1], moved[2] - first[2]), 1);
+  for (const std::int64_t id : selected)
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(after.at(id)[i] - nodes_.at(id)[i], moved[i] - first[i], 1e-4) << "node " << id;
 }
 
 TEST_F(HandTest, undo_takes_a_move_by_the_ring_back) {

@@ -81,6 +81,10 @@ TEST_F(MeasuringTest, a_cut_is_dragged_and_typed_and_only_what_is_left_is_select
   ASSERT_EQ(std::sscanf(cut.substr(cut.find(" at ")).c_str(), " at %lf %lf %lf %lf", &foot_x, &foot_y, &tip_x, &tip_y), 4) << cut;
   station_->kiosk().skip_lines();
   const double x = (foot_x + tip_x) / 2, y = (foot_y + tip_y) / 2;
+  station_->move(x, y);
+  station_->settled_aim();
+  ASSERT_TRUE(station_->item("hand").has_value());
+  EXPECT_EQ(station_->item("hand")->state, "drag: move the cut");
   station_->drag(x, y, x + (tip_x - foot_x) / 2, y + (tip_y - foot_y) / 2);
   const std::string dragged = heard("cut x = ");
   EXPECT_NE(dragged.substr(0, dragged.find(" shells")), cut.substr(0, cut.find(" shells")));

@@ -155,6 +155,11 @@ Under CuttingTool::under(const input::Pixel& pixel) const {
   return stereo::on_handle(toolkit::aim(context_.view), plane_->point, plane_->normal(), pixel) ? Under::cut_handle : Under::picture;
 }
 
+toolkit::HandlePart CuttingTool::part_at(const input::Pixel& pixel) const {
+  if (under(pixel) != Under::cut_handle) return {};
+  return {toolkit::arrow_line(toolkit::aim(context_.view), plane_->point, plane_->normal()), "drag: move the cut"};
+}
+
 bool CuttingTool::gesture(const input::Gesture& gesture) {
   const stereo::Aim aim = toolkit::aim(context_.view);
   if (const auto* taken = std::get_if<input::HandleTaken>(&gesture)) {
@@ -250,6 +255,8 @@ std::string CuttingTool::words() const {
 }
 
 std::string CuttingTool::live_words() const { return drag_ && context_.shown.snapshot ? "Cut at " + words() : std::string(); }
+
+std::string CuttingTool::value_at_hand() const { return drag_ && context_.shown.snapshot ? words() : std::string(); }
 
 std::string CuttingTool::setting_words() const { return "Cut \u00b7 " + words(); }
 

@@ -41,6 +41,7 @@ class CuttingTool final : public toolkit::Tool,
   bool takes_numbers(const toolkit::Pointer& pointer) const override;
   bool begin_number(const std::string& text, const toolkit::Pointer& pointer) override;
   input::Under under(const input::Pixel& pixel) const override;
+  toolkit::HandlePart part_at(const input::Pixel& pixel) const override;
   bool pulling() const override { return false; }
   bool dragging() const override { return drag_.has_value(); }
   void cancel_gesture() override;
@@ -58,6 +59,7 @@ class CuttingTool final : public toolkit::Tool,
   void draw_options(panels::OptionRow& row) override;
   std::string setting_words() const override;
   std::string live_words() const override;
+  std::string value_at_hand() const override;
   void draw_dialog(int kind, bool opened, panels::PanelLayout& layout) override;
   void trace_picture() override;
 

@@ -80,17 +80,13 @@ void HistoryTool::go_to(std::uint64_t generation) {
 
 // --- newer states ---
 
-bool HistoryTool::hold(const mesh::document::Edit& edit, bool sends) {
+std::optional<std::vector<std::string>> HistoryTool::lost_by(const mesh::document::Edit& edit) const {
   const auto& shown = context_.shown.snapshot;
-  if (!shown || question_) return question_.has_value();
+  if (!shown || mesh::document::kind_of(edit).group == mesh::document::EditGroup::step) return std::nullopt;
   const std::uint64_t generation = shown->info().generation;
-  if (mesh::document::kind_of(edit).group == mesh::document::EditGroup::step) {
-    if (std::holds_alternative<mesh::document::Undo>(edit) && shown->info().can_undo) stepping_from_ = generation;
-    return false;
-  }
   // The state that an undo leads to may not have arrived.
   const bool stepping = stepping_from_ == generation && (context_.link.edits.under_way() || !context_.link.document.up_to_date());
-  if ((!shown->info().can_redo && !stepping) || may_give_up_of_ == generation) return false;
+  if ((!shown->info().can_redo && !stepping) || may_give_up_of_ == generation) return std::nullopt;
   std::vector<std::string> lost;
   const link::FollowedHistory& history = context_.link.history;
   const auto place = stepping || !history.fresh() ? std::nullopt : history.place_of(generation);
@@ -101,10 +97,21 @@ bool HistoryTool::hold(const mesh::document::Edit& edit, bool sends) {
       changes_model = changes_model || !link::is_selecting(maker);
       lost.push_back(words_of_maker(maker));
     }
-    if (!changes_model) return false;  // a selection is made again as fast as a question is answered
+    if (!changes_model) return std::nullopt;  // a selection is made again as fast as a question is answered
   }
+  return lost;
+}
+
+bool HistoryTool::would_hold(const mesh::document::Edit& edit) const { return question_ || lost_by(edit); }
+
+bool HistoryTool::hold(const mesh::document::Edit& edit, bool sends) {
+  const auto& shown = context_.shown.snapshot;
+  if (!shown || question_) return question_.has_value();
+  if (std::holds_alternative<mesh::document::Undo>(edit) && shown->info().can_undo) stepping_from_ = shown->info().generation;
+  const std::optional<std::vector<std::string>> lost = lost_by(edit);
+  if (!lost) return false;
   held_ = sends ? std::optional(edit) : std::nullopt;
-  ask(lost);
+  ask(*lost);
   return true;
 }
 

@@ -23,6 +23,7 @@ class HistoryTool final : public toolkit::Tool, public toolkit::HasTab, public t
   void document_changed() override;
   const char* tab() const override { return "History"; }
   void draw_tab(panels::PanelLayout& layout) override;
+  bool would_hold(const mesh::document::Edit& edit) const override;
   bool hold(const mesh::document::Edit& edit, bool sends) override;
   const panels::Question* question() const override { return question_ ? &*question_ : nullptr; }
   void reply(panels::Reply reply) override;
@@ -30,6 +31,9 @@ class HistoryTool final : public toolkit::Tool, public toolkit::HasTab, public t
  private:
   void go_to(std::uint64_t generation);
   StateFacts facts() const;
+  /// The newer states that an edit would set aside, in words, if the user must be asked; they may be unknown. Nothing: it needs no
+  /// question.
+  std::optional<std::vector<std::string>> lost_by(const mesh::document::Edit& edit) const;
   void ask(const std::vector<std::string>& lost);
 
   toolkit::ToolContext& context_;

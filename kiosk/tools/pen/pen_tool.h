@@ -28,6 +28,7 @@ class PenTool final : public toolkit::Tool,
   std::string_view name() const override;
   void command(std::uint8_t number, const toolkit::Pointer& pointer) override;
   input::Under under(const input::Pixel&) const override { return input::Under::picture; }
+  toolkit::HandlePart part_at(const input::Pixel&) const override { return {}; }
   bool pulling() const override { return hand_.holds(); }
   bool dragging() const override { return hand_.holds(); }
   void cancel_gesture() override;

@@ -20,6 +20,7 @@ enum class ShapingCommand : std::uint8_t {
   axis_z,
   no_axis,
   panel,
+  rigid,
   falloff,
   flatter,
   less_flat,

@@ -26,6 +26,8 @@ inline constexpr std::array kKeys = {
                       "no axis: lift, slide and move again"},
     input::KeyBinding{display::letter('T'), false, false, command_of(ShapingCommand::panel), input::Menu::shape, "T",
                       "pull: show or hide how pulls fade out"},
+    input::KeyBinding{display::letter('R'), true, true, command_of(ShapingCommand::rigid), input::Menu::shape, "Ctrl+Shift+R",
+                      "rigid: all selected nodes move as far as the hand; or falloff: less toward the border"},
     input::KeyBinding{display::letter('D'), false, false, command_of(ShapingCommand::falloff), input::Menu::shape, "D",
                       "next profile of the falloff"},
     input::KeyBinding{display::Key::up, true, false, command_of(ShapingCommand::flatter), input::Menu::shape, "Ctrl+Up",

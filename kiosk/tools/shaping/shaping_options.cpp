@@ -17,6 +17,12 @@ Vec3 unit(DeckAxis axis) {
   return Vec3::Zero();
 }
 
+void turn_rigid(ShapingOptions& options) {
+  const bool was_rigid = is_rigid(options);
+  if (!was_rigid) options.before_rigid = options.profile;
+  options.profile = was_rigid ? options.before_rigid : mesh::shape::Profile::constant;
+}
+
 DeckAxis next(DeckAxis axis) { return static_cast<DeckAxis>((static_cast<int>(axis) + 1) % 4); }
 
 ShapingOptions for_another_deck(ShapingOptions options) {

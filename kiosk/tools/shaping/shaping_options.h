@@ -33,7 +33,8 @@ mesh::shape::FreeEnds next(mesh::shape::FreeEnds ends);
 
 struct ShapingOptions {
   mesh::shape::Profile profile = mesh::shape::Profile::smooth;
-  double flat = 0;  ///< 0..1
+  mesh::shape::Profile before_rigid = mesh::shape::Profile::smooth;  ///< the profile that comes back after a rigid pull
+  double flat = 0;                                                   ///< 0..1
   FalloffDirection along;
   mesh::shape::FreeEnds free_ends = mesh::shape::FreeEnds::rigid;
   mesh::shape::Origin origin = mesh::shape::Origin::grab;
@@ -45,6 +46,10 @@ struct ShapingOptions {
   std::optional<double> symmetry_place;  ///< where the plane cuts that axis; empty: at the middle of the selection when the edit begins
   bool operator==(const ShapingOptions&) const = default;
 };
+/// All selected nodes move alike.
+inline bool is_rigid(const ShapingOptions& options) { return options.profile == mesh::shape::Profile::constant; }
+/// Makes pulls rigid, or gives them the last falloff back.
+void turn_rigid(ShapingOptions& options);
 inline constexpr double kFlatStep = 0.1;
 
 /// What is left of the options when another deck is opened: nothing that was picked on the old one or is a length or a place in it.

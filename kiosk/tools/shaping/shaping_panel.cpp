@@ -70,6 +70,7 @@ void direction_rows(const FalloffDirection& now, PanelLayout& layout) {
 ShapingOptions falloff_section(const ShapingOptions& now, PanelLayout& layout) {
   ShapingOptions wanted = now;
   section("Falloff");
+  set_by("moves", is_rigid(now) ? "rigid" : "falloff", ShapingCommand::rigid, layout);
   ImGui::SetNextItemWidth(-1);
   if (ImGui::BeginCombo("##profile", std::string(name(now.profile)).c_str())) {
     for (int i = 0; i <= static_cast<int>(Profile::gaussian); ++i)
@@ -109,9 +110,13 @@ std::optional<ShapingOptions> shaping_panel(const ShapingFacts& facts, PanelLayo
   return wanted != now ? std::optional(wanted) : std::nullopt;
 }
 
+std::string pull_value(const PullFacts& facts) {
+  return facts.degrees ? fmt::format("{:.2f}\u00b0", *facts.degrees) : length_text(facts.length, facts.length_unit);
+}
+
 std::string pull_words(const PullFacts& facts) {
-  const std::string by = facts.degrees ? fmt::format("{:.2f}\u00b0", *facts.degrees) : length_text(facts.length, facts.length_unit);
-  return fmt::format("{} {}   {} {}", facts.what, by, panels::grouped(facts.nodes), facts.nodes == 1 ? "node moves" : "nodes move");
+  return fmt::format("{} {}   {} {}", facts.what, pull_value(facts), panels::grouped(facts.nodes),
+                     facts.nodes == 1 ? "node moves" : "nodes move");
 }
 
 }  // namespace prismesh::kiosk::tools::shaping

@@ -25,6 +25,8 @@ struct PullFacts {
   std::optional<double> degrees{};  ///< in place of a length
   std::uint64_t nodes = 0;          ///< that move
 };
+/// "12.4 mm", "3.20\u00b0".
+std::string pull_value(const PullFacts& facts);
 /// "Lift 12.4 mm   416 nodes move".
 std::string pull_words(const PullFacts& facts);
 

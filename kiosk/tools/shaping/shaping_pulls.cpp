@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "kiosk/input/typed_numbers.h"
 #include "kiosk/toolkit/open_panels.h"
 #include "kiosk/toolkit/picking.h"
 #include "kiosk/toolkit/tool_set.h"
@@ -33,6 +34,7 @@ void ShapingTool::begin_pull(Under handle, const Pixel& at) {
   if (turning) grab.axis = axis_;
   grab.pixel = at;
   pull_ = ActivePull{HandlePull(grab, now), at};
+  pull_->options = options_;
   handle_ = handle;
   pulled_ = {};
   context_.link.drag.begin(edit);
@@ -45,17 +47,17 @@ void ShapingTool::pull_to(const Pixel& pixel) {
   if (pull_->axis_known) context_.link.drag.pull(pulled_);
 }
 
-/// The edit gets exactly the numbers that were typed.
+/// The preview, and the edit once they are entered, get exactly the numbers that were typed.
 void ShapingTool::send_typed() {
   if (!pull_ || !pull_->typed || !pull_->axis_known) return;
   pulled_ = *pull_->typed;
   if (pull_->pull.handle() == Under::lift_handle) pulled_.distance = pull_->pull.lift_of(pull_->typed->distance);
   context_.link.drag.pull(pulled_);
-  context_.link.drag.commit();
+  if (pull_->entered) context_.link.drag.commit();
 }
 
 void ShapingTool::cancel_gesture() {
-  if (!pull_) return;
+  if (!dragging()) return;
   pull_.reset();
   if (is_typing() && typing_.what == Typing::For::pull) toolkit::close_dialog(context_);
   context_.link.drag.cancel();
@@ -71,10 +73,16 @@ void ShapingTool::view_moved(const Pointer& pointer) {
 
 Result<void> ShapingTool::follow() {
   const RunningDrag* drag = context_.link.drag.running();
-  if (drag == nullptr)
+  if (drag == nullptr) {
+    if (pull_ && pull_->by_number && !pull_->entered) {
+      pulled_ = typing_.from;
+      typing_.refused = true;
+    }
     pull_.reset();
-  else if (drag->begun() && pull_ && !pull_->axis_known)
+  } else if (drag->begun() && pull_ && !pull_->axis_known) {
     take_axis(*drag);
+  }
+  follow_typing();
   ask_followed_edges();
   return preview_.follow();
 }
@@ -102,7 +110,7 @@ void ShapingTool::take_axis(const RunningDrag& drag) {
     send_typed();
   else
     pull_to(pull_->pointer);
-  if (pull_->released_early) context_.link.drag.commit();
+  if (pull_->released_early && !pull_->typed) context_.link.drag.commit();
 }
 
 // --- numbers ---
@@ -122,7 +130,9 @@ bool ShapingTool::begin_number(const std::string& text, const Pointer& pointer) 
     handle_ = part;
   else if ((handle_ == Under::turn_handle) != axis_.has_value())
     handle_ = axis_ ? Under::turn_handle : Under::lift_handle;
-  typing_ = {Typing::For::pull, text, {}};
+  typing_ = {Typing::For::pull, text};
+  typing_.at = pull_ ? context_.hand.at : pointer;
+  typing_.from = pulled_;
   toolkit::open_dialog(context_, this);
   return true;
 }
@@ -133,7 +143,7 @@ std::optional<Vec3> ShapingTool::typed_direction() const {
   switch (handle_) {
     case Under::turn_handle: return axis ? std::optional(axis->direction) : std::nullopt;
     case Under::slide_handle:
-    case Under::move_handle: return pulled_.by.norm() > 0 ? std::optional(Vec3(pulled_.by.normalized())) : std::nullopt;
+    case Under::move_handle: return typing_.from.by.norm() > 0 ? std::optional(Vec3(typing_.from.by.normalized())) : std::nullopt;
     default: break;
   }
   if (options_.each_normal || (!pull_ && !anchor_)) return std::nullopt;
@@ -148,17 +158,70 @@ void ShapingTool::enter_number(const std::string& text) {
 }
 
 void ShapingTool::enter_pull(const std::string& text) {
-  const Result<Pull> typed = typed_displacement(handle_, text, pulled_);
+  const Result<Pull> typed = typed_displacement(handle_, text, typing_.from);
   if (!typed) {
     typing_.problem = typed.error().message;
     return;
   }
+  if (!pull_ && context_.link.drag.running() != nullptr) return;  // a preview is ending: the box stays until the edit can begin
   toolkit::close_dialog(context_);
   context_.trace.line(fmt::format("typed {} {}", name_of(handle_), text));
   if (!pull_) begin_pull(handle_, Pixel::Zero());
   if (!pull_) return;
   pull_->typed = *typed;
+  pull_->entered = true;
   send_typed();
+}
+
+// --- the preview of a number that is being typed ---
+
+bool ShapingTool::wants_preview(const std::string& text) const {
+  return !typing_.refused && typing_.previewed != text && (pull_ || context_.link.drag.running() == nullptr);
+}
+
+/// Shows what the number would do. A text that is no number yet leaves what is shown; an empty one takes it back.
+void ShapingTool::preview_number(const std::string& text) {
+  typing_.previewed = text;
+  Pull shown;
+  if (input::is_blank(text)) {
+    if (!pull_) return;
+    if (!pull_->by_number) shown = typing_.from;
+    if (pull_->pull.handle() == Under::lift_handle) shown.distance = pull_->pull.along_arrow(shown);
+  } else if (const Result<Pull> typed = typed_displacement(handle_, text, typing_.from)) {
+    shown = *typed;
+  } else {
+    return;
+  }
+  if (!pull_) {
+    // The user is asked at Enter, not in the middle of a number.
+    if (!anchor_ || context_.tools.would_hold(edit_of({handle_, anchor_->id, anchor_->at, axis_}, options_, {}))) return;
+    begin_pull(handle_, Pixel::Zero());
+    if (!pull_) return;
+    pull_->by_number = true;
+  }
+  pull_->typed = shown;
+  send_typed();
+}
+
+void ShapingTool::end_number_preview() {
+  pull_.reset();
+  pulled_ = typing_.from;
+  context_.link.drag.cancel();
+  ++context_.changes;
+}
+
+/// Another edit or another preview begins.
+void ShapingTool::leave_preview() {
+  if (pull_ && pull_->by_number && !pull_->entered) end_number_preview();
+}
+
+/// A preview goes with the box. Other options make another one.
+void ShapingTool::follow_typing() {
+  if (!pull_ || !pull_->typed || pull_->entered) return;
+  const bool other = pull_->by_number && pull_->options != options_;
+  if (types_pull() && !other) return;
+  end_number_preview();
+  typing_.previewed.reset();
 }
 
 }  // namespace prismesh::kiosk::tools::shaping

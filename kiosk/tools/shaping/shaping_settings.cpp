@@ -84,6 +84,7 @@ bool ShapingTool::take_back() {
 void ShapingTool::set_falloff(const FalloffDirection& along) {
   if (picks_ == TwoNodes::falloff) axis_pick_.cancel();
   options_.along = along;
+  context_.follow_soon = true;
   const mesh::Vec3& way = along.direction;
   context_.trace.line(along.in_all() ? "falloff all ways"
                                      : fmt::format("falloff along {} {} {} {}", along.what, way.x(), way.y(), way.z()));
@@ -106,6 +107,7 @@ void ShapingTool::change_option(ShapingCommand command) {
   using mesh::shape::Origin;
   using mesh::shape::Profile;
   switch (command) {
+    case ShapingCommand::rigid: turn_rigid(options_); break;
     case ShapingCommand::falloff:
       options_.profile = static_cast<Profile>((static_cast<int>(options_.profile) + 1) % (static_cast<int>(Profile::gaussian) + 1));
       break;

@@ -10,6 +10,7 @@
 #include "kiosk/toolkit/picking.h"
 #include "kiosk/toolkit/tool_set.h"
 #include "kiosk/tools/shaping/falloff_direction.h"
+#include "kiosk/tools/shaping/handle_outline.h"
 #include "kiosk/tools/shaping/shaping_keys.h"
 #include "kiosk/tools/shaping/shaping_panel.h"
 #include "kiosk/tools/shaping/touch_words.h"
@@ -30,6 +31,16 @@ Use use_of(Under handle) {
     case Under::move_handle: return Use::ring;
     case Under::turn_handle: return Use::arc;
     default: return Use::arrow;
+  }
+}
+
+/// What dragging a part of the handle does.
+std::string drag_words(Under handle) {
+  switch (handle) {
+    case Under::slide_handle: return "drag: slide";
+    case Under::move_handle: return "drag: move";
+    case Under::turn_handle: return "drag: turn";
+    default: return "drag: lift";
   }
 }
 
@@ -94,6 +105,13 @@ bool ShapingTool::take_handle_gesture(const Gesture& gesture) {
 Under ShapingTool::under(const input::Pixel& pixel) const {
   const std::optional<render::Handle> shown = shown_handle();
   return shown && !pull_ && !context_.tools.in_mode() ? part_of_handle(toolkit::aim(context_.view), *shown, pixel) : Under::picture;
+}
+
+toolkit::HandlePart ShapingTool::part_at(const input::Pixel& pixel) const {
+  const std::optional<render::Handle> shown = shown_handle();
+  const Under part = under(pixel);
+  if (!shown || part == Under::picture) return {};
+  return {outline_of_part(toolkit::aim(context_.view), *shown, part), drag_words(part)};
 }
 
 std::optional<render::Handle> ShapingTool::shown_handle() const {
@@ -199,7 +217,8 @@ void ShapingTool::draw_options(panels::OptionRow& row) {
   const std::string& unit = context_.shown.snapshot->info().length_unit;
   const bool grab_alone =
       options_.profile != mesh::shape::Profile::constant && options_.flat == 0 && options_.origin == mesh::shape::Origin::grab;
-  row.value("falloff", std::string(mesh::shape::name(options_.profile)) + (grab_alone ? " from the grab" : ""),
+  row.value("moves", is_rigid(options_) ? "rigid" : "falloff", key(ShapingCommand::rigid));
+  row.value("profile", std::string(mesh::shape::name(options_.profile)) + (grab_alone ? " from the grab" : ""),
             key(ShapingCommand::falloff));
   row.value("mirror",
             options_.symmetry == DeckAxis::none ? "off" : std::string(kDeckAxisNames[static_cast<std::size_t>(options_.symmetry)]),
@@ -217,8 +236,7 @@ std::string ShapingTool::setting_words() const {
   return options_.keep_apart ? words + " \u00b7 parts kept apart" : words;
 }
 
-std::string ShapingTool::live_words() const {
-  if (!pull_) return {};
+PullFacts ShapingTool::pull_facts() const {
   PullFacts facts;
   facts.what = std::string(name_of(pull_->pull.handle()));
   facts.length_unit = context_.shown.snapshot->info().length_unit;
@@ -228,7 +246,13 @@ std::string ShapingTool::live_words() const {
     default: facts.length = pulled_.by.norm(); break;
   }
   if (const link::RunningDrag* drag = context_.link.drag.running(); drag != nullptr && drag->begun()) facts.nodes = drag->facts().nodes;
-  return pull_words(facts);
+  return facts;
+}
+
+std::string ShapingTool::live_words() const { return pull_ && context_.shown.snapshot ? pull_words(pull_facts()) : std::string(); }
+
+std::string ShapingTool::value_at_hand() const {
+  return dragging() && !pull_->typed && !is_typing() && context_.shown.snapshot ? pull_value(pull_facts()) : std::string();
 }
 
 void ShapingTool::draw_dialog(int, bool opened, PanelLayout& layout) {
@@ -241,8 +265,11 @@ void ShapingTool::draw_dialog(int, bool opened, PanelLayout& layout) {
   facts.hint = pull ? typed_hint(handle_, typed_direction()) : "a number; nothing takes it away";
   facts.begun = typing_.begun;
   facts.problem = typing_.problem;
+  if (pull) facts.at = typing_.at;
   if (const std::optional<std::string> entered = panels::number_box(facts, layout.view(), opened, entry_))
     layout.ask([this, text = *entered] { enter_number(text); });
+  else if (pull && wants_preview(entry_.text))
+    layout.ask([this, text = entry_.text] { preview_number(text); });
 }
 
 }  // namespace prismesh::kiosk::tools::shaping

@@ -16,6 +16,7 @@
 #include "kiosk/tools/shaping/pull_preview.h"
 #include "kiosk/tools/shaping/shaping_commands.h"
 #include "kiosk/tools/shaping/shaping_options.h"
+#include "kiosk/tools/shaping/shaping_panel.h"
 
 namespace prismesh::kiosk::tools::shaping {
 
@@ -34,6 +35,8 @@ class ShapingTool final : public toolkit::Tool,
                           public toolkit::InRail,
                           public toolkit::HasOptions,
                           public toolkit::TellsLive,
+                          public toolkit::GuardsEdits,
+                          public toolkit::Previews,
                           public toolkit::HasDialogs {
  public:
   explicit ShapingTool(toolkit::ToolContext& context)
@@ -42,15 +45,19 @@ class ShapingTool final : public toolkit::Tool,
   std::string_view name() const override;
   void command(std::uint8_t number, const toolkit::Pointer& pointer) override;
   input::Under under(const input::Pixel& pixel) const override;
+  toolkit::HandlePart part_at(const input::Pixel& pixel) const override;
   bool gesture(const input::Gesture& gesture) override;
   bool takes_numbers(const toolkit::Pointer& pointer) const override;
   bool begin_number(const std::string& text, const toolkit::Pointer& pointer) override;
   bool in_mode() const override { return axis_pick_.active(); }
   bool leave_mode() override;
   bool take_back() override;
-  bool dragging() const override { return pulling(); }
+  bool dragging() const override { return pull_ && !pull_->by_number; }
   void cancel_gesture() override;
   bool pulling() const override { return pull_.has_value(); }
+  bool allow_edit() override { return true; }
+  void edit_begins() override { leave_preview(); }
+  void leave_preview() override;
   mesh::document::Shaping shaping(std::int64_t grab, const Vec3& middle) const override {
     return shaping_of(options_, {input::Under::move_handle, grab, middle});
   }
@@ -64,6 +71,7 @@ class ShapingTool final : public toolkit::Tool,
   std::string_view panel_name() const override { return "shaping"; }
   void draw_panel(panels::PanelLayout& layout) override;
   std::string live_words() const override;
+  std::string value_at_hand() const override;
   std::vector<toolkit::RailEntry> rail() const override;
   void draw_options(panels::OptionRow& row) override;
   std::string setting_words() const override;
@@ -75,6 +83,10 @@ class ShapingTool final : public toolkit::Tool,
     enum class For : std::uint8_t { pull, move_limit, symmetry_place } what = For::pull;
     std::string begun{};
     std::string problem{};
+    std::optional<input::Pixel> at{};        ///< of the pointer, if the box stands there
+    Pull from{};                             ///< the pull before the first digit: where one number for disk or ring goes
+    std::optional<std::string> previewed{};  ///< the text that is shown as a preview, or can't be
+    bool refused = false;                    ///< the server refuses the preview
   };
   /// What two nodes are picked for.
   enum class TwoNodes : std::uint8_t { axis, falloff };
@@ -85,6 +97,9 @@ class ShapingTool final : public toolkit::Tool,
     bool axis_known = false;      ///< the server has told the normal: only then it understands a distance
     bool released_early = false;  ///< before that
     std::optional<Pull> typed{};  ///< so far, whatever the pointer says; of a lift: along the arrow
+    bool by_number = false;       ///< no pointer pulls: it shows a number that is being typed
+    bool entered = false;         ///< that number
+    ShapingOptions options{};     ///< as it began
   };
 
   std::optional<render::Handle> shown_handle() const;
@@ -114,6 +129,12 @@ class ShapingTool final : public toolkit::Tool,
   void type_for(Typing::For what, const std::optional<double>& now);
   void enter_number(const std::string& text);
   void enter_pull(const std::string& text);
+  bool types_pull() const { return is_typing() && typing_.what == Typing::For::pull; }
+  bool wants_preview(const std::string& text) const;
+  void preview_number(const std::string& text);
+  void end_number_preview();
+  void follow_typing();
+  PullFacts pull_facts() const;
   void enter_option(const std::string& text);
   std::optional<Vec3> typed_direction() const;
   void next_handle();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include <fmt/format.h>
@@ -239,14 +240,25 @@ std::optional<Pixel> WeldingTool::pixel_of(std::size_t line) const {
 }
 
 std::optional<std::size_t> WeldingTool::weld_at(const Pixel& pixel) const {
+  if (!in_mode_ || !is_shown() || drag_) return std::nullopt;
   for (std::size_t i = 0; i < std::min(wanted_->would->lines.size(), kMaxWeldsDrawn); ++i)
     if (const auto at = pixel_of(i); at && (*at - pixel).norm() <= kGrabPixels) return i;
   return std::nullopt;
 }
 
-Under WeldingTool::under(const Pixel& pixel) const {
-  if (!in_mode_ || !is_shown() || drag_) return Under::picture;
-  return weld_at(pixel) ? Under::weld : Under::picture;
+Under WeldingTool::under(const Pixel& pixel) const { return weld_at(pixel) ? Under::weld : Under::picture; }
+
+toolkit::HandlePart WeldingTool::part_at(const Pixel& pixel) const {
+  const std::optional<std::size_t> weld = weld_at(pixel);
+  const std::optional<Pixel> middle = weld ? pixel_of(*weld) : std::nullopt;
+  if (!middle || wanted_->would->lines.size() < 2) return {};
+  constexpr int kSteps = 32;
+  std::vector<Pixel> rim;
+  for (int step = 0; step <= kSteps; ++step) {
+    const double angle = 2 * std::numbers::pi * step / kSteps;
+    rim.emplace_back(*middle + kGrabPixels * Pixel(std::cos(angle), std::sin(angle)));
+  }
+  return {{std::move(rim)}, "drag: set the pitch"};
 }
 
 bool WeldingTool::gesture(const input::Gesture& gesture) {
@@ -372,6 +384,8 @@ std::string WeldingTool::live_words() const {
   if (!drag_ || !is_shown()) return {};
   return fmt::format("Pitch {}, {}", pitch_words(), counted(wanted_->would->line_count, "weld"));
 }
+
+std::string WeldingTool::value_at_hand() const { return drag_ && is_shown() ? pitch_words() : std::string(); }
 
 std::vector<toolkit::RailEntry> WeldingTool::rail() const {
   return {{toolkit::RailPlace::weld, "Weld", &key_of(WeldingCommand::take_in_hand), context_.open.in_hand == this}};

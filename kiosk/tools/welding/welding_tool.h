@@ -37,6 +37,7 @@ class WeldingTool final : public toolkit::Tool,
   void command(std::uint8_t number, const toolkit::Pointer& pointer) override;
   bool gesture(const input::Gesture& gesture) override;
   input::Under under(const input::Pixel& pixel) const override;
+  toolkit::HandlePart part_at(const input::Pixel& pixel) const override;
   bool pulling() const override { return false; }
   bool dragging() const override { return drag_.has_value(); }
   void cancel_gesture() override;
@@ -55,6 +56,7 @@ class WeldingTool final : public toolkit::Tool,
   void draw_options(panels::OptionRow& row) override;
   std::string setting_words() const override;
   std::string live_words() const override;
+  std::string value_at_hand() const override;
   void draw_dialog(int kind, bool opened, panels::PanelLayout& layout) override;
 
  private:
@@ -79,7 +81,7 @@ class WeldingTool final : public toolkit::Tool,
   double pitch() const;
   mesh::document::Weld edit() const;
   std::optional<input::Pixel> pixel_of(std::size_t line) const;
-  /// The shown weld at a pixel. Precondition: is_shown().
+  /// The shown weld at a pixel; nothing while one is dragged.
   std::optional<std::size_t> weld_at(const input::Pixel& pixel) const;
   void click(const input::Pixel& at);
   void ask();
