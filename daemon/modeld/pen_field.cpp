@@ -83,12 +83,11 @@ void PenField::show(const std::shared_ptr<const mesh::document::Document>& docum
   std::swap(shown_, shown);
 }
 
-void PenField::show_drag(const std::optional<DragFeel>& feel) {
-  std::optional<DragFeel> last = feel;
+void PenField::show_drag(std::optional<DragFeel> feel) {
   const std::lock_guard lock(mutex_);
-  if (!shown_.drag && !last) return;
+  if (!shown_.drag && !feel) return;
   ++shown_.count;
-  shown_.drag.swap(last);
+  shown_.drag.swap(feel);  // the one before ends with the argument, after the lock
 }
 
 void PenField::run(const std::stop_token& stop) {

@@ -49,7 +49,7 @@ class PenField {
   void show(const std::shared_ptr<const mesh::document::Document>& document);
   /// The field is of this step of a drag of that generation from now on, and its worsening is felt as resistance; nothing: of the
   /// generation again.
-  void show_drag(const std::optional<DragFeel>& feel);
+  void show_drag(std::optional<DragFeel> feel);
 
   /// Fields that were computed.
   std::uint64_t computed() const { return computed_; }

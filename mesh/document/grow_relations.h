@@ -11,8 +11,8 @@ namespace prismesh::mesh::document {
 /// adjacency.
 void grow_relations(const Model& before, Generation& next);
 
-/// Finds anew on which sheets those of the nodes lie that belong to welds. `moved` ascending; their places in `next` are others than before.
-/// Costs the elements, and the shells of the model if there are such nodes.
+/// Finds anew on which sheets those of the nodes lie that belong to welds. `moved` ascending; their places in `next` are others than
+/// before. Costs the elements, and the shells of the model if there are such nodes.
 void place_anew(const NodeSet& moved, Generation& next);
 
 }  // namespace prismesh::mesh::document
