@@ -6,6 +6,7 @@
 #include <pty.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
+#include <termios.h>
 #include <unistd.h>
 
 #include "tests/cli/cli_fixture.h"
@@ -26,7 +27,10 @@ class OnTerminal {
     for (std::string& word : command) arguments.push_back(word.data());
     arguments.push_back(nullptr);
     pid_ = ::forkpty(&terminal_, nullptr, nullptr, nullptr);
-    if (pid_ != 0) return;
+    if (pid_ != 0) {
+      keep_output();
+      return;
+    }
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     ::execv(arguments[0], arguments.data());
     ::_exit(127);
@@ -60,6 +64,13 @@ class OnTerminal {
   const std::string& shown() const { return shown_; }
 
  private:
+  /// Ctrl-C makes a terminal drop what it hasn't handed on yet, after it has sent the signal: the last words of a quick program with it.
+  void keep_output() const {
+    termios settings{};
+    ASSERT_EQ(::tcgetattr(terminal_, &settings), 0);
+    settings.c_lflag |= NOFLSH;
+    ASSERT_EQ(::tcsetattr(terminal_, TCSANOW, &settings), 0);
+  }
   bool read_some() {
     pollfd watched{terminal_, POLLIN, 0};
     if (::poll(&watched, 1, std::chrono::milliseconds(kPatience).count()) <= 0) return false;
