@@ -16,7 +16,7 @@ namespace prismesh::ipc::remote {
 
 namespace {
 
-constexpr std::size_t kLeastChunk = std::size_t{64} << 10;
+constexpr std::size_t kMinChunk = std::size_t{64} << 10;
 constexpr double kHashingShare = 0.1;  ///< of the progress bar
 constexpr std::size_t kPushHashPiece = std::size_t{4} << 20;
 constexpr int kRoundsMax = 3;
@@ -177,7 +177,7 @@ class Push {
     });
     sent_bytes_ += out;
     if (!answer) {
-      chunk_bytes_ = std::max(std::min(kLeastChunk, options_.chunk_bytes), chunk_bytes_ / 2);
+      chunk_bytes_ = std::max(std::min(kMinChunk, options_.chunk_bytes), chunk_bytes_ / 2);
       if (const Result<void> waited = remote_.wait_after(answer.error()); !waited) return fail(waited.error());
       return std::optional<std::uint64_t>();
     }

@@ -20,10 +20,10 @@ namespace {
 constexpr std::array<std::uint32_t, 6> kCorners{1, 2, 0, 2, 3, 0};
 constexpr std::size_t kShellsOfRun = 64;
 /// Of selected shells that a moving picture shows as they are; where more are selected, coarse triangles have their colour.
-constexpr std::size_t kMostHeld = 20'000;
+constexpr std::size_t kMaxHeld = 20'000;
 constexpr double kFinest = 1, kCoarsest = 8, kCoarser = 1.35;  ///< pixels
 /// Sides of so many pixels are seen, and so are shells with longer ones; longer than the second they are only hidden if nothing else helps.
-constexpr double kSeenSide = 4, kLongestSide = 64;
+constexpr double kMinSeenSide = 4, kMaxSidePixels = 64;
 
 void make_indices(gl::VertexArray& array, gl::Buffer& buffer) {
   array = gl::VertexArray::make();
@@ -216,7 +216,7 @@ void ShellDraws::find_selected(const ModelTable& table) {
   });
   const std::size_t all = std::accumulate(selected.begin(), selected.end(), std::size_t{0});
   selected_.assign(selected.size(), 0);
-  if (all <= kMostHeld)
+  if (all <= kMaxHeld)
     for (std::size_t c = 0; c < selected.size(); ++c) selected_[c] = selected[c] > 0 ? 1 : 0;
 }
 
@@ -263,14 +263,14 @@ void ShellDraws::choose(const mesh::lod::Viewpoint& from, const Eigen::Matrix4d&
     bounds.radius += farthest_;
     return volume.may_hold(bounds);
   };
-  for (mesh::lod::Limits limits{kFinest, kSeenSide};;) {
+  for (mesh::lod::Limits limits{kFinest, kMinSeenSide};;) {
     clusters_.clear();
     mesh::lod::choose(levels, added_, from, limits, clusters_);
     std::erase_if(clusters_, [&](std::uint32_t c) { return !is_seen(c); });
     chosen_triangles_ = mesh::lod::triangles_of(levels, clusters_);
     chosen_pixels_ = limits.error_pixels;
     if (chosen_triangles_ <= triangles || limits.error_pixels >= kCoarsest) break;
-    if (limits.side_pixels < kLongestSide)
+    if (limits.side_pixels < kMaxSidePixels)
       limits.side_pixels *= kCoarser;
     else
       limits = {limits.error_pixels * kCoarser};

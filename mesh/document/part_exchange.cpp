@@ -536,7 +536,7 @@ class ExchangePlanner {
     return is_plain(old_shells_[static_cast<std::size_t>(at)]);
   }
 
-  /// Segments go with the new shells that come from their shell.
+  /// Segments, and what names some shells, go with the new shells that come from their shells.
   void find_lost_segments() {
     ShellSet followed;
     for (std::size_t s = 0; s < mesh_.shells.size(); ++s)
@@ -546,6 +546,14 @@ class ExchangePlanner {
     for (std::size_t s = 0; s < old_shells_.size(); ++s)
       if (old_shells_[s].in_segments && !std::binary_search(followed.begin(), followed.end(), plan_.old_shells[s]))
         plan_.lost_segments.push_back(plan_.old_shells[s]);
+    std::map<std::uint32_t, bool> goes_on;
+    for (std::size_t s = 0; s < old_shells_.size(); ++s)
+      for (const std::uint32_t set : old_shells_[s].sets)
+        goes_on[set] = goes_on[set] || std::binary_search(followed.begin(), followed.end(), plan_.old_shells[s]);
+    for (const auto& [set, goes] : goes_on)
+      if (!goes)
+        plan_.notes.push_back(card_of(*now_.relations, set) +
+                              " gets no shell of the new mesh: none has its centre on a shell that it names");
   }
 
   void place_shells(const spatial::ShellTree& old_surface) {

@@ -30,6 +30,7 @@ struct VariantSheet {
   Vec3 low{0, 0, 1.5};
   int first = 1;
   double thickness = 1.5;
+  double across = 1;  ///< sides in y, as a share of `side`
 };
 
 std::string variant_text(const VariantSheet& sheet, const std::string& more = "") {
@@ -37,7 +38,7 @@ std::string variant_text(const VariantSheet& sheet, const std::string& more = ""
   for (int j = 0; j <= sheet.rows; ++j)
     for (int i = 0; i <= sheet.columns; ++i)
       text += printed("%8d%16.6f%16.6f%16.6f\n", sheet.first + i + j * (sheet.columns + 1), sheet.low.x() + sheet.side * i,
-                      sheet.low.y() + sheet.side * j, sheet.low.z());
+                      sheet.low.y() + sheet.side * sheet.across * j, sheet.low.z());
   text += "*ELEMENT_SHELL\n";
   for (int j = 0; j < sheet.rows; ++j)
     for (int i = 0; i < sheet.columns; ++i) {
@@ -221,6 +222,37 @@ TEST_F(ReplacePartEdit, the_same_mesh_again_gives_the_same_bytes) {
     EXPECT_THAT(report.lost, IsEmpty());
   }
   EXPECT_EQ(saved(document), before);
+}
+
+TEST_F(ReplacePartEdit, of_stretched_shells_takes_the_nearest_corner) {
+  // The reach of a corner is longer than the short sides: the row at y = 15 must not take the one at 20 with it.
+  const std::string held =
+      "*SET_NODE_LIST\n         7\n        10        11        12\n*BOUNDARY_SPC_SET\n         7         0         1\n";
+  const VariantSheet stretched{2, 8, 60, {0, 0, 0}, 1, 1.5, 1.0 / 12};
+  variant(stretched, held);
+  Document document = open_deck(folder / "stretched.k", variant_text(stretched, held));
+  must_apply(document, R"({"edit": "replace_part", "part": 7, "deck": "variant.k"})");
+  EXPECT_TRUE(saved(document) == content_of(folder / "stretched.k"));
+}
+
+TEST_F(ReplacePartEdit, tells_of_segments_and_ranges_of_shells_that_get_no_new_shell) {
+  const std::string named =
+      "*SET_SEGMENT\n        11\n      2002      2003      2028      2027\n*LOAD_SEGMENT_SET\n        11         1       1.0\n"
+      "*SET_SHELL_LIST_GENERATE\n        12\n      2001      2002\n*LOAD_SHELL_SET\n        12         1       1.0\n";
+  variant({6, 1, 20});  // its centres are at y = 10
+  Document document = deck(named);
+  const EditReport report = must_apply(document, kReplace);
+  EXPECT_THAT(report.lost, Contains(HasSubstr("the segment at shell:2002 is gone")));
+  EXPECT_THAT(report.notes, Contains(HasSubstr("gets no shell of the new mesh")));
+}
+
+TEST_F(ReplacePartEdit, says_that_a_mesh_is_nowhere_near_the_part) {
+  variant({48, 8, 2.5, {0, 0, 31.5}});
+  Document document = deck();
+  EXPECT_THAT(must_apply(document, kReplace).notes, Contains(HasSubstr("no shell of the new mesh is within ")));
+  variant({});
+  Document near = deck();
+  EXPECT_THAT(must_apply(near, kReplace).notes, Each(testing::Not(HasSubstr("no shell of the new mesh is within "))));
 }
 
 TEST_F(ReplacePartEdit, exchanged_again_is_as_exchanged_once) {
