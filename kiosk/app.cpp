@@ -1,6 +1,8 @@
 #include "kiosk/app.h"
 
 #include <cstdio>
+#include <fstream>
+#include <iterator>
 #include <memory>
 
 #include "base/supervisor.h"
@@ -11,6 +13,7 @@
 #include "kiosk/open_window.h"
 #include "kiosk/render/offscreen.h"
 #include "kiosk/station.h"
+#include "kiosk/tools/exhibition/show_script.h"
 #include "kiosk/windowed_kiosk.h"
 
 namespace prismesh::kiosk {
@@ -34,9 +37,30 @@ Result<void> run_in_window(const WindowOptions& options, const StationOptions& w
   MonotonicClock clock;
   Result<std::unique_ptr<display::Window>> window = open_window(options, clock);
   if (!window) return fail(window.error());
-  Result<std::unique_ptr<Station>> station = Station::create(what);
-  if (!station) return fail(station.error());
-  return WindowedKiosk(**window, **station).run();
+  for (;;) {
+    Result<std::unique_ptr<Station>> station = Station::create(what);
+    if (!station) return fail(station.error());
+    if (Result<void> run = WindowedKiosk(**window, **station).run(); !run) return run;
+    if (!(*station)->editor.context().anew) return {};
+  }
+}
+
+Result<std::optional<toolkit::ExhibitionOptions>> exhibition_of(const drivers::settings::ExhibitionSettings& settings) {
+  if (settings.deck.empty()) return std::optional<toolkit::ExhibitionOptions>();
+  toolkit::ExhibitionOptions exhibition;
+  std::error_code none;
+  if (!std::filesystem::is_regular_file(settings.deck, none))
+    return fail(Error{settings.deck, 0, "the deck of the exhibition isn't there ([exhibition] deck in prismesh.toml)"});
+  exhibition.deck = std::filesystem::absolute(settings.deck, none);
+  exhibition.idle_ns = settings.idle_s * 1'000'000'000;
+  exhibition.warning_ns = settings.warning_s * 1'000'000'000;
+  exhibition.pin = settings.pin;
+  if (settings.show.empty()) return exhibition;
+  if (const auto show = tools::exhibition::read_show(settings.show); !show) return fail(show.error());
+  std::ifstream in(settings.show, std::ios::binary);
+  exhibition.show_file = settings.show;
+  exhibition.show_text.assign(std::istreambuf_iterator<char>(in), {});
+  return exhibition;
 }
 
 /// Calibrates the display that the window covers.
@@ -93,6 +117,12 @@ Result<void> run(const AppOptions& options) {
   what.follows_others = options.follow;
   what.title = options.title;
   what.trace = options.trace;
+  if (!options.calibrate) {
+    Result<std::optional<toolkit::ExhibitionOptions>> exhibition = exhibition_of(settings->exhibition);
+    if (!exhibition) return fail(exhibition.error());
+    what.exhibition = std::move(*exhibition);
+    if (what.exhibition) what.deck.reset();  // it is opened as it lies on the disk, without edits of earlier visits
+  }
   if (options.headless_frames > 0) return run_headless(options, what);
   const WindowOptions window = window_options(options, settings->display);
   return options.calibrate ? run_calibration(options, window, what) : run_in_window(window, what);

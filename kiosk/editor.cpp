@@ -165,6 +165,7 @@ void Editor::cancel_gesture() {
 
 void Editor::command(const input::Command& command, const Pointer& pointer) {
   ++context_.changes;
+  if (!tools_.allow_command(command)) return;
   if (input::binding_of(key_bindings(), command).asks_for_edit() && !tools_.allow_edit()) return;
   if (command == command_of(EditorCommand::menu_at_pointer))
     open_menu(pointer);

@@ -58,6 +58,12 @@ class Editor {
   /// When make_levels must be called at the latest; nothing: there is nothing to do.
   std::optional<std::int64_t> next_levels_ns() const { return levels_.next_ns(context_.clock.now_ns()); }
 
+  /// Somebody did something. True: nothing else may get it. `fresh`: not the repetition of a key that is held down.
+  bool takes_input(bool fresh) { return tools_.takes_input(fresh); }
+  bool allow_command(const input::Command& command) { return tools_.allow_command(command); }
+  /// When `follow` must be called at the latest; negative: whenever.
+  std::int64_t next_follow_ns() const { return tools_.next_ns(context_.clock.now_ns()); }
+
   input::Under under(const input::Pixel& pixel) const { return tools_.under(pixel); }  ///< panels don't count
   void gesture(const input::Gesture& gesture);
   void cancel_gesture();

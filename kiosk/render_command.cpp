@@ -222,7 +222,10 @@ Result<panels::Gui> show_field(const RenderOptions& options, render::Renderer& r
   if (const auto type = gui->set_type(picture.profile.stereo() ? panels::kStereoType : panels::kFlatType); !type) return fail(type.error());
   // Panels that fit their content have their size after the second time.
   for (int round = 0; round < 3; ++round)
-    gui->layout({options.width, options.height}, 0.02, [&] { tools::comparison::legend(options.legend, {options.width, options.height}); });
+    gui->layout({options.width, options.height}, 0.02, [&] {
+      panels::PanelLayout layout{{options.width, options.height}};
+      tools::comparison::legend(options.legend, layout);
+    });
   return gui;
 }
 

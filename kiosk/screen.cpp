@@ -20,7 +20,9 @@ void Screen::set_size(display::PixelSize size) {
 }
 
 Result<void> Screen::lay_out() {
-  if (Result<void> type = gui_.set_type(panels::type_for(size_, editor_.profile().stereo())); !type) return type;
+  panels::TypeSizes sizes = panels::type_for(size_, editor_.profile().stereo());
+  if (editor_.context().options.exhibition) sizes = panels::for_fingers(sizes, editor_.profile().optics.pixel_pitch_mm);
+  if (Result<void> type = gui_.set_type(sizes); !type) return type;
   const std::int64_t now = editor_.context().clock.now_ns();
   panels::PanelLayout layout{size_, [this](const input::Command& command) { editor_.panel_command(command); }};
   layout.run_command_at = [this](const input::Command& command, double x, double y) { editor_.panel_command(command, input::Pixel(x, y)); };

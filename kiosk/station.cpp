@@ -6,7 +6,9 @@
 
 #include "base/clock.h"
 #include "kiosk/display/link_check.h"
+#include "kiosk/editor_keys.h"
 #include "kiosk/toolkit/history_file.h"
+#include "kiosk/tools/files/files_tool.h"
 
 namespace prismesh::kiosk {
 
@@ -27,6 +29,25 @@ std::filesystem::path state_file(const char* name) {
   return folder.empty() ? folder : folder / name;
 }
 
+/// What a visitor types in an exhibition is kept nowhere.
+toolkit::ToolOptions tool_options(const StationOptions& options) {
+  toolkit::ToolOptions tools;
+  if (options.exhibition) {
+    tools.exhibition = options.exhibition;
+    tools.exhibition->tries = state_file("pin-tries");
+    tools.exhibition->leave = tools::files::quit_command();
+    tools.exhibition->fullscreen = command_of(EditorCommand::fullscreen);
+  } else {
+    tools.expressions = state_file("expressions");
+    tools.commands_used = state_file("commands");
+    tools.decks_opened = state_file("decks");
+    tools.intake = ipc::intake_socket_path(options.runtime_dir);
+  }
+  tools.follows_others = options.follows_others;
+  tools.title = options.title;
+  return tools;
+}
+
 }  // namespace
 
 Station::Station(const StationOptions& options, std::unique_ptr<render::Renderer> made, panels::Gui gui)
@@ -37,11 +58,9 @@ Station::Station(const StationOptions& options, std::unique_ptr<render::Renderer
       devices(ipc::device_socket_path(options.runtime_dir), trace),
       eyes({}, devices, clock, trace),
       renderer(std::move(made)),
-      editor(options.profile,
-             {state_file("expressions"), state_file("commands"), state_file("decks"), ipc::intake_socket_path(options.runtime_dir),
-              options.follows_others, options.title},
-             {link, pen, *renderer, clock, trace}),
-      screen(std::move(gui), options.mouse.in_words(), KeptArrangement(state_file("arrangement.toml")), editor),
+      editor(options.profile, tool_options(options), {link, pen, *renderer, clock, trace}),
+      screen(std::move(gui), options.mouse.in_words(),
+             KeptArrangement(options.exhibition ? std::filesystem::path() : state_file("arrangement.toml")), editor),
       fixed_eyes_(options.fixed_eyes_mm.has_value()),
       resting_mm_(options.fixed_eyes_mm.value_or(kRestingEyesMm)),
       panel_latency_ms_(options.panel_latency_ms) {

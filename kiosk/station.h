@@ -28,6 +28,7 @@ struct StationOptions {
   bool trace = false;
   bool follows_others = false;  ///< moves together with other kiosks that do
   std::string title{};          ///< says at the top of the view what is shown
+  std::optional<toolkit::ExhibitionOptions> exhibition{};
 };
 
 /// Between the eyes while nobody is tracked, mm from the screen's centre.

@@ -4,6 +4,7 @@
 #include "kiosk/tools/comparison/comparison_tool.h"
 #include "kiosk/tools/contact/contact_tool.h"
 #include "kiosk/tools/cutting/cutting_tool.h"
+#include "kiosk/tools/exhibition/exhibition_tool.h"
 #include "kiosk/tools/files/files_tool.h"
 #include "kiosk/tools/find/find_tool.h"
 #include "kiosk/tools/history/history_tool.h"
@@ -53,6 +54,7 @@ const std::vector<ListedTool>& listed_tools() {
       {tools::pen::keys(), make<tools::pen::PenTool>},
       {kWindowKeys},
       {tools::tour::keys(), make<tools::tour::TourTool>},
+      {{}, make<tools::exhibition::ExhibitionTool>},
   };
   return kTools;
 }

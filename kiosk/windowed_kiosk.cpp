@@ -114,7 +114,23 @@ Result<bool> WindowedKiosk::draw() {
   return true;
 }
 
+namespace {
+
+bool is_of_hand(const display::WindowEvent& event) {
+  return std::holds_alternative<display::PointerMoved>(event) || std::holds_alternative<display::ButtonChanged>(event) ||
+         std::holds_alternative<display::WheelTurned>(event) || std::holds_alternative<display::KeyChanged>(event) ||
+         std::holds_alternative<display::TextTyped>(event);
+}
+
+}  // namespace
+
 Result<void> WindowedKiosk::take(const display::WindowEvent& event) {
+  const auto* key = std::get_if<display::KeyChanged>(&event);
+  const bool repeats = (key != nullptr && key->repeat) || std::holds_alternative<display::TextTyped>(event);  // text comes with its key
+  if (is_of_hand(event) && station_.editor.takes_input(!repeats)) {
+    dirty_ = true;
+    return {};
+  }
   if (const auto* moved = std::get_if<display::PointerMoved>(&event)) {
     // What was pressed is known before the pointer has left it.
     if (Result<void> settled = settle(); !settled) return settled;
@@ -129,7 +145,7 @@ Result<void> WindowedKiosk::take(const display::WindowEvent& event) {
     return {};
   }
   if (const auto* button = std::get_if<display::ButtonChanged>(&event)) return take_button(*button);
-  if (const auto* key = std::get_if<display::KeyChanged>(&event)) return take_key(*key);
+  if (key != nullptr) return take_key(*key);
   if (const auto* text = std::get_if<display::TextTyped>(&event)) return take_text(*text);
   station_.screen.gui().feed(event);
   dirty_ = true;
@@ -252,7 +268,7 @@ Result<void> WindowedKiosk::fire_held() {
 void WindowedKiosk::do_command(const input::Command& command) { do_command(command, pointer_on_picture()); }
 
 void WindowedKiosk::do_command(const input::Command& command, const std::optional<input::Pixel>& pointer) {
-  if (command == command_of(EditorCommand::fullscreen))
+  if (command == command_of(EditorCommand::fullscreen) && station_.editor.allow_command(command))
     window_.set_fullscreen(fullscreen_ = !fullscreen_);
   else if (command == command_of(EditorCommand::rearm))
     station_.devices.rearm();
@@ -342,6 +358,8 @@ std::int64_t WindowedKiosk::patience_ns() const {
   if (station_.screen.gui().wants_keys()) patience = shorter(patience, kCaretBlinkNs);
   if (const auto report = watch_.next_ns()) patience = shorter(patience, std::max<std::int64_t>(0, *report - now));
   if (const auto levels = station_.editor.next_levels_ns()) patience = shorter(patience, std::max<std::int64_t>(0, *levels - now));
+  if (const std::int64_t next = station_.editor.next_follow_ns(); next >= 0)
+    patience = shorter(patience, std::max<std::int64_t>(0, next - now));
   if (held_) patience = shorter(patience, std::max<std::int64_t>(0, held_->fires_ns - now));
   if (rests_ns_ && !gestures_.dragging()) patience = shorter(patience, std::max<std::int64_t>(0, *rests_ns_ - now));
   if (shown_moving_ && !gestures_.dragging()) patience = shorter(patience, std::max<std::int64_t>(0, wheel_rest_ns_ - now));

@@ -181,7 +181,7 @@ run_all_tests() {
 # run_soak MINUTES: runs what takes too long for every change. For half of the time the fuzz targets run; for the other half sanitized tests
 # run in random order and with new random numbers: random edits, daemons killed in the middle. Besides, it tries states of the disk after a
 # power cut: some 1,700 for each minute (100,800 in an hour), 100 million ticks of the haptic pen's safety, and 10
-# million steps of the pen on real decks.
+# million steps of the pen on real decks, and random input on the kiosk of an exhibition.
 run_soak() {
   local seconds=$(($1 * 60)) targets name end seed=$RANDOM status
   mkdir -p out/test out/soak
@@ -218,6 +218,13 @@ run_soak() {
   if step "build: release" configure_and_build release -DPRISMESH_TESTS=ON -- touch_test; then
     PRISMESH_SEED=$seed PRISMESH_TOUCH_STEPS=2000000 build/bin/touch_test --gtest_brief=1 </dev/null || status=$?
     count_one "touch_test with PRISMESH_SEED=$seed" "$status"
+  fi
+  say "Random input on the kiosk of an exhibition for half of the time"
+  status=0
+  if step "build: release" configure_and_build release -DPRISMESH_TESTS=ON -- station_test prismesh-kiosk prismesh-modeld; then
+    PRISMESH_SEED=$seed PRISMESH_MONKEY_S=$((seconds / 2)) build/bin/station_test --gtest_filter='ExhibitionTest.input_at_random*' --gtest_brief=1 \
+      </dev/null || status=$?
+    count_one "station_test at random with PRISMESH_SEED=$seed" "$status"
   fi
   say "The demo on every real deck with shells"
   status=0

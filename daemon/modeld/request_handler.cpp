@@ -10,7 +10,7 @@
 #include "daemon/modeld/edit_preview.h"
 #include "ipc/wire/failure.h"
 #include "mesh/document/deck_relations.h"
-#include "mesh/document/followed_edges.h"
+#include "mesh/document/pull_lines.h"
 #include "mesh/document/quality_figures.h"
 #include "mesh/document/weld_checks.h"
 
@@ -120,13 +120,15 @@ Outcome RequestHandler::preview(const ipc::PreviewEdit& request) const {
 Outcome RequestHandler::followed_edges(const ipc::FindFollowedEdges& request) const {
   if (!keeper_.is_open()) return {ipc::failed_from({"", 0, "no document is open"}), {}, {}, {}};
   const mesh::document::Generation& current = keeper_.document().current();
-  const auto edges = mesh::document::find_followed_edges(current, request.edit);
-  if (!edges) return {ipc::failed_from(edges.error()), {}, {}, {}};
+  const auto lines = mesh::document::find_pull_lines(current, request.edit);
+  if (!lines) return {ipc::failed_from(lines.error()), {}, {}, {}};
   ipc::FollowedEdges found;
   found.generation = current.number;
-  found.edge_count = edges->size();
-  for (const auto& edge : std::span(*edges).first(std::min(edges->size(), ipc::kMaxFollowedEdges)))
+  found.edge_count = lines->followed.size();
+  for (const auto& edge : std::span(lines->followed).first(std::min(lines->followed.size(), ipc::kMaxFollowedEdges)))
     found.nodes.insert(found.nodes.end(), {edge[0].value, edge[1].value});
+  for (const auto& [from, to] : std::span(lines->halfway).first(std::min(lines->halfway.size(), ipc::kMaxFollowedEdges)))
+    found.halfway.push_back({from.x(), from.y(), from.z(), to.x(), to.y(), to.z()});
   return {std::move(found), {}, {}, {}};
 }
 

@@ -297,13 +297,32 @@ Section remote_section(RemoteSettings& remote) {
            whole("reserved_gb", remote.reserved_gb, 0, 1'000'000, " GB"), whole("upload_hours", remote.upload_hours, 1, 8760, " h")}};
 }
 
+/// A hash of crypt(3), or nothing.
+Key crypt_hash(std::string_view name, std::string& to) {
+  return {name, [&to](const toml::node& node) -> Problem {
+            const auto* value = node.as_string();
+            const bool good = value != nullptr && (value->get().empty() || (value->get().starts_with('$') && value->get().size() > 20)) &&
+                              value->get().find_first_of(std::string("\0\n", 2)) == std::string::npos;
+            if (!good) return "must be a hash in quotes as `openssl passwd -6` writes it, like \"$6$..\": not the PIN itself";
+            to = value->get();
+            return {};
+          }};
+}
+
+Section exhibition_section(ExhibitionSettings& exhibition, const fs::path& folder) {
+  return {"exhibition",
+          {file_beside("deck", exhibition.deck, folder), file_beside("show", exhibition.show, folder),
+           whole("idle_s", exhibition.idle_s, 5, 86'400, " s"), whole("warning_s", exhibition.warning_s, 1, 600, " s"),
+           crypt_hash("pin", exhibition.pin)}};
+}
+
 class Reader {
  public:
   Reader(std::string file, StationSettings& settings, DeviceLines& places)
       : file_(std::move(file)), folder_(fs::path(file_).parent_path()), settings_(settings), places_(places) {}
 
   Result<void> read(const toml::table& root) const {
-    const std::array<Section, 7> sections{
+    const std::array<Section, 8> sections{
         Section{"display",
                 {name_or_file("profile", settings_.display.profile, folder_, "a profile's name or file in quotes, like \"prism-mask\""),
                  number("latency_ms", settings_.display.latency_ms, 0, 200, " ms"),
@@ -317,7 +336,8 @@ class Reader {
         tracker_section(settings_.eye_tracker, places_, file_),
         servo_section(settings_.prism_servo, places_, file_),
         pen_section(settings_.haptic_pen, folder_),
-        remote_section(settings_.remote)};
+        remote_section(settings_.remote),
+        exhibition_section(settings_.exhibition, folder_)};
     std::vector<std::string_view> names;
     for (const Section& section : sections) names.push_back(section.name);
     for (const auto& [key, node] : root) {

@@ -113,6 +113,15 @@ struct RemoteSettings {
   std::int64_t upload_hours = 24;  ///< an upload that gets no bytes for so long is removed
 };
 
+/// A kiosk that visitors use (docs/exhibition.md).
+struct ExhibitionSettings {
+  std::string deck;             ///< what is shown, a path (relative to the settings file); empty: no exhibition
+  std::string show;             ///< a file of steps, likewise; empty: the model stands there until somebody comes
+  std::int64_t idle_s = 90;     ///< of a visit without input, until the warning
+  std::int64_t warning_s = 15;  ///< until it ends
+  std::string pin;              ///< a hash of crypt(3)
+};
+
 struct StationSettings {
   DisplaySettings display;
   HandSettings hand;
@@ -121,6 +130,7 @@ struct StationSettings {
   PrismServoSettings prism_servo;
   HapticPenSettings haptic_pen;
   RemoteSettings remote;
+  ExhibitionSettings exhibition;
   std::vector<std::filesystem::path> files;  ///< the files that were read, in order
 };
 

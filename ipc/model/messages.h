@@ -83,7 +83,7 @@ using FindShells = mesh::document::ShellsWanted;
 struct PreviewEdit {  ///< asks what an edit would do, without applying it
   mesh::document::Edit edit;
 };
-struct FindFollowedEdges {    ///< asks which free edges would follow an edit, without applying it
+struct FindFollowedEdges {    ///< asks which free edges would follow an edit, and how far it reaches; nothing is done
   mesh::document::Edit edit;  ///< translate, lift, slide, rotate or move; the displacement is ignored
 };
 /// Asks for a field (mesh/document/field.h).
@@ -248,6 +248,8 @@ struct FollowedEdges {
   std::uint64_t generation = 0;      ///< that the edit would be applied to
   std::vector<std::uint32_t> nodes;  ///< two for each edge, as indices into the generation's nodes; max kMaxFollowedEdges edges
   std::uint64_t edge_count = 0;      ///< without that limit
+  /// Where the weight falls through a half: both ends of each piece, deck coordinates; max kMaxFollowedEdges.
+  std::vector<std::array<double, 6>> halfway{};
 };
 inline constexpr std::size_t kMaxFollowedEdges = 5000;
 struct FieldMade {          ///< descriptor: the values (ipc/model/field_page.h)

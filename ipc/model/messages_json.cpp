@@ -91,7 +91,8 @@ PRISMESH_JSON_OBJECT(ipc::PreviewedGap, f("at", m.at), f("why", m.why));
 PRISMESH_MESSAGE(ipc::EditPreviewed, "edit_previewed", f("generation", m.generation), f("report", m.report), f("points", m.points),
                  f("shells", m.shells), f("shell_count", m.shell_count), f("replaced", m.replaced), f("lines", m.lines),
                  f("line_count", m.line_count), f("left_out", m.left_out));
-PRISMESH_MESSAGE(ipc::FollowedEdges, "followed_edges", f("generation", m.generation), f("nodes", m.nodes), f("edge_count", m.edge_count));
+PRISMESH_MESSAGE(ipc::FollowedEdges, "followed_edges", f("generation", m.generation), f("nodes", m.nodes), f("edge_count", m.edge_count),
+                 f("halfway", m.halfway));
 PRISMESH_JSON_OBJECT(ipc::PreviewedShell, f("shell", m.shell), f("corners", m.corners), f("warn", m.warn), f("fail", m.fail),
                      f("clusters", m.clusters));
 PRISMESH_MESSAGE(ipc::DragBegun, "drag_begun", f("drag", m.drag), f("base_generation", m.base_generation), f("nodes", m.nodes),

@@ -122,8 +122,8 @@ std::vector<Gesture> Gestures::pressed(const display::ButtonChanged& event, Unde
   drag_ = Drag::pressed;
   const bool plain_left = event.button == MouseButton::left && !event.modifiers.alt;
   if (under == Under::picture || !plain_left) return {};
-  if (under == Under::slide_handle) {
-    // The disk lies over nodes that may be meant: only a drag takes it, and only one that doesn't select.
+  if (under == Under::slide_handle || under == Under::falloff_ring) {
+    // Disk and falloff line lie over nodes that may be meant: only a drag takes them, and only one that doesn't select.
     if (!event.modifiers.shift && !event.modifiers.ctrl) handle_below_ = under;
     return {};
   }

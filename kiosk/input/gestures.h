@@ -18,7 +18,7 @@ namespace prismesh::kiosk::input {
 using Pixel = Eigen::Vector2d;
 
 /// What lies under the pointer when a button goes down.
-enum class Under : std::uint8_t { picture, panel, lift_handle, slide_handle, move_handle, turn_handle, cut_handle, weld };
+enum class Under : std::uint8_t { picture, panel, lift_handle, slide_handle, move_handle, turn_handle, falloff_ring, cut_handle, weld };
 
 struct NodeClicked {
   Pixel at = Pixel::Zero();

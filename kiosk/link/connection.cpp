@@ -4,6 +4,7 @@
 #include <utility>
 #include <variant>
 
+#include "ipc/wire/failure.h"
 #include "kiosk/link/notice_words.h"
 
 namespace prismesh::kiosk::link {
@@ -64,6 +65,10 @@ void Connection::lost(const Error& error) {
 
 void Connection::ask(const ipc::Request& request, Then then) {
   if (!client_) return notices_.say(notice_of_missing_server());
+  if (guard_ && !guard_(request)) {
+    if (then) then(ipc::failed_from({"", 0, "other files than the deck that is shown are closed here"}));
+    return;
+  }
   const Result<std::uint64_t> sent = client_->send(request);
   if (!sent) return lost(sent.error());
   const bool can_stop = can_be_stopped(request);
@@ -83,7 +88,7 @@ void Connection::follow_pen(const ipc::FollowPen& request, const ipc::Descriptor
 }
 
 void Connection::tell(const ipc::Request& request) {
-  if (!client_) return;
+  if (!client_ || (guard_ && !guard_(request))) return;
   if (const Result<std::uint64_t> sent = client_->send(request); !sent) lost(sent.error());
 }
 

@@ -48,6 +48,8 @@ class Connection {
   /// Counts up with each message, connection and loss.
   std::uint64_t changes() const { return changes_; }
 
+  /// From now on requests that the guard refuses are answered here, and not sent.
+  void set_guard(std::function<bool(const ipc::Request&)> guard) { guard_ = std::move(guard); }
   /// Sends a request. `then` gets the answer; never, if the connection ends before. Without a connection the user is told.
   void ask(const ipc::Request& request, Then then);
   /// Sends a request that changes nothing: without a connection there is nothing to tell.
@@ -81,6 +83,7 @@ class Connection {
   void lost(const Error& error);
 
   std::filesystem::path socket_;
+  std::function<bool(const ipc::Request&)> guard_;
   Clock& clock_;
   notices::Trace trace_;
   LinkNotices& notices_;

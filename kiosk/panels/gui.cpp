@@ -186,6 +186,14 @@ Result<Gui> Gui::create() {
   return gui;
 }
 
+TypeSizes for_fingers(const TypeSizes& sizes, double pixel_pitch_mm) {
+  constexpr float kLeastBody = 24;
+  constexpr double kTargetMm = 15, kLinesOfTarget = 2.5;
+  const auto for_target = static_cast<float>(std::ceil(kTargetMm / kLinesOfTarget / std::max(pixel_pitch_mm, 0.05)));
+  const float scale = std::max(1.0F, std::max(kLeastBody, for_target) / sizes.body);
+  return {std::round(sizes.small * scale), std::round(sizes.body * scale), std::round(sizes.title * scale)};
+}
+
 Result<void> Gui::set_type(const TypeSizes& sizes) {
   ImFontAtlas& fonts = *ImGui::GetIO().Fonts;
   if (fonts.Fonts.Size > 0 && sizes == impl_->type) return {};

@@ -29,6 +29,9 @@ inline constexpr TypeSizes kStereoType{24, 24, 30};
 /// low picture has room for.
 TypeSizes type_for(display::PixelSize picture, bool stereo);
 
+/// The same for fingers, and for those who stand: at least 24 pixels, and so large that a button of 2.5 lines is 15 mm high.
+TypeSizes for_fingers(const TypeSizes& sizes, double pixel_pitch_mm);
+
 class Gui {
  public:
   /// Needs a current GL context. Errors: the font isn't installed (names the package).

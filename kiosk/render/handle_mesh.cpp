@@ -344,13 +344,23 @@ HandlePiece measures_piece(const std::vector<std::vector<Vec3>>& ways, const Han
   return piece;
 }
 
-HandlePiece followed_edges_piece(const std::vector<std::array<Vec3, 2>>& edges, const HandleSpace& space) {
+namespace {
+
+HandlePiece tubes(const std::vector<std::array<Vec3, 2>>& edges, const HandleSpace& space, bool active) {
   const ScreenSpace screen(space);
-  HandlePiece piece{{}, true, false, 1};
+  HandlePiece piece{{}, active, false, 1};
   for (const auto& [from, to] : edges)
     if (finite(from) && finite(to) && from != to)
       add_tube(piece.triangles, screen, {screen.point(from), screen.point(to)}, kFollowedRadius);
   return piece;
 }
+
+}  // namespace
+
+HandlePiece followed_edges_piece(const std::vector<std::array<Vec3, 2>>& edges, const HandleSpace& space) {
+  return tubes(edges, space, true);
+}
+
+HandlePiece halfway_piece(const std::vector<std::array<Vec3, 2>>& pieces, const HandleSpace& space) { return tubes(pieces, space, false); }
 
 }  // namespace prismesh::kiosk::render

@@ -49,4 +49,7 @@ HandlePiece measures_piece(const std::vector<std::vector<Vec3>>& ways, const Han
 /// Tubes along edges, of the active colour. Edges that aren't finite are left out.
 HandlePiece followed_edges_piece(const std::vector<std::array<Vec3, 2>>& edges, const HandleSpace& space);
 
+/// Tubes along the pieces of the line where a pull falls to half, white. Pieces that aren't finite are left out.
+HandlePiece halfway_piece(const std::vector<std::array<Vec3, 2>>& pieces, const HandleSpace& space);
+
 }  // namespace prismesh::kiosk::render

@@ -29,12 +29,17 @@ void upload_instances(Instances& instances, const std::vector<Glyph>& values) {
   instances.bytes_uploaded += bytes;
 }
 
-/// By node: 1 if it is a corner of a visible face that is selected, by itself or by all of its corners.
+/// A visible face that is selected, by itself or by all of its corners. If so, `nodes` are its corners.
+bool is_selected_face(const ModelTable& table, std::size_t shell, mesh::ShellNodes& nodes) {
+  return table.shell(shell, nodes) && (table.shell_selected(shell) || table.corners_selected(nodes)) && table.shell_visible(shell);
+}
+
+/// By node: 1 if it is a corner of a selected face.
 std::vector<std::uint8_t> nodes_of_selected_faces(const ModelTable& table) {
   std::vector<std::uint8_t> nodes_on(table.node_count(), 0);
   mesh::ShellNodes nodes;
   for (std::size_t s = 0; s < table.shell_count(); ++s)
-    if (table.shell(s, nodes) && (table.shell_selected(s) || table.corners_selected(nodes)) && table.shell_visible(s))
+    if (is_selected_face(table, s, nodes))
       for (const mesh::NodeIndex node : nodes.node) nodes_on[node.value] = 1;
   return nodes_on;
 }
@@ -126,6 +131,10 @@ Result<void> ModelLayer::set_model(std::shared_ptr<const ModelSource> source) {
     std::vector<std::uint8_t> nodes = selected_.count() > 0 ? nodes_of_selected_faces(*table_) : std::vector<std::uint8_t>();
     covered_.changed = chunks_that_differ(covered_.nodes, nodes);
     covered_.nodes = std::move(nodes);
+    const auto is_in = [this, corners = mesh::ShellNodes{}](std::uint32_t shell) mutable {
+      return is_selected_face(*table_, shell, corners);
+    };
+    if (const auto done = selected_rim_.upload(outline_.rim(covered_.nodes, is_in), "edges around selected faces"); !done) return done;
   }
   return loose_.update(*table_, textures_.origin(), all, changes->moved_chunks, visible, &covered_);
 }
@@ -298,8 +307,8 @@ std::size_t ModelLayer::bytes_uploaded() const {
                       contact_.bytes_uploaded() + cut_curves_.bytes_uploaded();
   for (const RowTexture* texture :
        {&textures_.positions(), &textures_.connectivity(), &textures_.surface(), &borders_.texture, &creases_.texture,
-        &line_elements_.texture, &selected_.texture(), &loose_.texture(), &preview_positions_, &preview_casting_.connectivity,
-        &selection_casting_.connectivity, &preview_edges_.texture})
+        &line_elements_.texture, &selected_rim_.texture, &selected_.texture(), &loose_.texture(), &preview_positions_,
+        &preview_casting_.connectivity, &selection_casting_.connectivity, &preview_edges_.texture})
     bytes += texture->bytes_uploaded();
   return bytes;
 }

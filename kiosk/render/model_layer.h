@@ -46,6 +46,8 @@ class ModelLayer {
 
   const LineSet& borders() const { return borders_; }
   const LineSet& creases() const { return creases_; }
+  /// Edges around the selected faces.
+  const LineSet& selected_rim() const { return selected_rim_; }
   const LineSet& line_elements() const { return line_elements_; }
   const SelectionRows& selected() const { return selected_; }
   /// Those that are corners of no selected face.
@@ -120,7 +122,7 @@ class ModelLayer {
   ShellDraws shell_draws_;
   Outline outline_;
   GlyphList glyph_list_;
-  LineSet borders_, creases_, line_elements_;
+  LineSet borders_, creases_, selected_rim_, line_elements_;
   std::vector<std::uint32_t> line_nodes_;
   std::vector<std::uint64_t> line_versions_;
   SelectionRows selected_, loose_;

@@ -122,6 +122,21 @@ void Outline::classify(const ModelTable& table, std::size_t c) {
   }
 }
 
+std::vector<NodePair> Outline::rim(std::span<const std::uint8_t> corners, const std::function<bool(std::uint32_t)>& is_in) const {
+  std::vector<NodePair> edges;
+  const std::size_t nodes = std::min(corners.size(), first_.empty() ? 0 : first_.size() - 1);
+  for (std::size_t n = 0; n < nodes; ++n) {
+    if (corners[n] == 0) continue;
+    for (std::size_t e = first_[n]; e < first_[n + 1];) {
+      const std::uint32_t high = half_edges_[e].high;
+      std::size_t inside = 0;
+      for (; e < first_[n + 1] && half_edges_[e].high == high; ++e) inside += is_in(half_edges_[e].shell) ? 1 : 0;
+      if (inside % 2 == 1) edges.push_back({static_cast<std::uint32_t>(n), high});
+    }
+  }
+  return edges;
+}
+
 std::vector<NodePair> Outline::gather(std::vector<NodePair> Chunk::*lines) const {
   std::vector<NodePair> all;
   for (const Chunk& chunk : chunks_) all.insert(all.end(), (chunk.*lines).begin(), (chunk.*lines).end());

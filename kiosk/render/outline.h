@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -22,6 +23,9 @@ class Outline {
 
   /// Edges with one visible shell, and those with three or more.
   std::vector<NodePair> borders() const { return gather(&Chunk::borders); }
+  /// The rim of the shells that `is_in` holds: edges at which an odd number of them ends. Only nodes with `corners` not 0 are looked at,
+  /// those of these shells.
+  std::vector<NodePair> rim(std::span<const std::uint8_t> corners, const std::function<bool(std::uint32_t)>& is_in) const;
   /// Edges with two visible shells that bend by more than kCreaseDegrees, independent of the sense of the normals.
   std::vector<NodePair> creases() const { return gather(&Chunk::creases); }
 

@@ -127,6 +127,7 @@ struct Picture {
   std::optional<Handle> cut_handle;  ///< the plane that cuts the model: its arrow, and the outline of the plane
   std::optional<Pen> pen;
   std::vector<std::array<Vec3, 2>> followed_edges;  ///< free edges that move as far as the handle, deck coordinates: drawn green
+  std::vector<std::array<Vec3, 2>> halfway_line;    ///< where a pull falls to half, deck coordinates: drawn white
   std::vector<std::vector<Vec3>> measures;          ///< ways from node to node, deck coordinates
   std::optional<PixelRect> rubber_band;
   std::vector<Eigen::Vector2d> lasso;  ///< display pixels; drawn closed

@@ -37,8 +37,8 @@ struct DrawnScene {
     const auto facts = [](const DrawnScene& d) {
       const Picture& p = d.picture;
       return std::tie(p.view, p.profile.optics.pixel_pitch_mm, p.colour, p.element_edges, p.outlines, p.quality_glyphs, p.damaged_only,
-                      p.marked, p.marked_point, p.selected_nodes, p.handle, p.cut_handle, p.pen, p.followed_edges, p.measures, p.shadows,
-                      p.field, p.two_views, d.images, d.width, d.height, d.scene_version);
+                      p.marked, p.marked_point, p.selected_nodes, p.handle, p.cut_handle, p.pen, p.followed_edges, p.halfway_line,
+                      p.measures, p.shadows, p.field, p.two_views, d.images, d.width, d.height, d.scene_version);
     };
     return facts(*this) == facts(other);
   }
@@ -396,6 +396,7 @@ void Renderer::Impl::draw_views(const Picture& picture, const EyeView& eye, int 
       half.cut_handle.reset();
       half.pen.reset();
       half.followed_edges.clear();
+      half.halfway_line.clear();
       half.marked.reset();
       half.marked_point.reset();
       half.shadows = false;

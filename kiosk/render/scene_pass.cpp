@@ -14,6 +14,7 @@ namespace {
 // Widths and sizes in display pixels.
 constexpr float kBorderHalfWidth = 1.0F;
 constexpr float kCreaseHalfWidth = 0.7F;
+constexpr float kSelectedRimHalfWidth = 1.4F;
 constexpr float kLineElementHalfWidth = 0.9F;
 constexpr float kCrowdedLineAlpha = 0.35F;  ///< of line elements a few pixels long
 constexpr float kPreviewHalfWidth = 0.65F;
@@ -126,6 +127,7 @@ void ScenePass::draw(const Picture& picture, const ViewContent& content, const E
 void ScenePass::draw_handles(const Picture& picture, const ModelLayer& model, const EyeView& eye) const {
   const HandleSpace space{picture.view, eye.mm_per_pixel, eye.viewer_mm, model.shown_box()};
   if (!picture.followed_edges.empty()) handle_.draw({followed_edges_piece(picture.followed_edges, space)}, eye);
+  if (!picture.halfway_line.empty()) handle_.draw({halfway_piece(picture.halfway_line, space)}, eye);
   if (!picture.measures.empty()) handle_.draw({measures_piece(picture.measures, space)}, eye);
   if (picture.marked_point) handle_.draw(mark_pieces(*picture.marked_point, space), eye);
   if (picture.handle) handle_.draw(handle_pieces(*picture.handle, space), eye);
@@ -254,6 +256,10 @@ void ScenePass::draw_model_lines(const Picture& picture, const ModelLayer& model
   if (picture.outlines) {
     draw_lines(model.creases(), positions, {kCreaseHalfWidth, ink(kCreaseColour, 0.55F)}, frame);
     draw_lines(model.borders(), positions, {kBorderHalfWidth, ink(kBorderColour, 0.85F)}, frame);
+  }
+  if (picture.selected_nodes) {
+    draw_lines(model.selected_rim(), positions, {kSelectedRimHalfWidth + kHemWidth, ink(kBorderColour, 0.9F)}, frame);
+    draw_lines(model.selected_rim(), positions, {kSelectedRimHalfWidth, ink(kSelectedColour, 1.0F)}, frame);
   }
   glDepthMask(GL_TRUE);
   draw_lines(model.line_elements(), positions, {kLineElementHalfWidth, ink(kLineElementColour, 1.0F), kCrowdedLineAlpha}, frame);

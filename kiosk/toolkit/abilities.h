@@ -38,6 +38,17 @@ class TakesNumbers : public Ability {
   virtual bool begin_number(const std::string& text, const Pointer& pointer) = 0;
 };
 
+/// Takes what the user does before anything else does.
+class GuardsInput : public Ability {
+ public:
+  /// Somebody pressed, moved or typed something. True: nothing else gets it. `fresh`: not the repetition of a key that is held down.
+  virtual bool takes_input(bool fresh) = 0;
+  /// False: the command isn't carried out.
+  virtual bool allow_command(const input::Command& command) = 0;
+  /// When it must be watched at the latest; negative: whenever.
+  virtual std::int64_t next_ns(std::int64_t now_ns) const = 0;
+};
+
 /// Has a handle in the picture that pulls the model.
 class HasHandle : public Ability {
  public:

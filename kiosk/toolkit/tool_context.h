@@ -72,6 +72,19 @@ struct OpenPanels {
   Cover cover = Cover::none;
 };
 
+/// A program that visitors use, and that leads back to its beginning (docs/exhibition.md).
+struct ExhibitionOptions {
+  std::filesystem::path deck;  ///< what is shown, absolute
+  std::string show_file;       ///< names the show in errors
+  std::string show_text;       ///< checked already
+  std::int64_t idle_ns = 0;
+  std::int64_t warning_ns = 0;
+  std::string pin;              ///< a hash of crypt(3); empty: there is no way out by hand
+  std::filesystem::path tries;  ///< where wrong PINs are kept; empty: nowhere
+  input::Command leave;         ///< asks for the PIN
+  input::Command fullscreen;    ///< does nothing
+};
+
 struct ToolOptions {
   std::filesystem::path expressions{};    ///< file of the entered expressions; empty: none
   std::filesystem::path commands_used{};  ///< file of the commands that were found; empty: none
@@ -79,6 +92,7 @@ struct ToolOptions {
   std::filesystem::path intake{};         ///< socket of prismesh-intake, whose models can be opened; empty: none
   bool follows_others = false;            ///< moves together with other kiosks that do
   std::string title{};                    ///< shown where no tool guides the user
+  std::optional<ExhibitionOptions> exhibition{};
 };
 
 struct ToolContext {
@@ -102,6 +116,7 @@ struct ToolContext {
   std::uint64_t changes = 0;        ///< counts up with each change of the picture or the panels
   bool keeps_apart = false;         ///< edits make no new contact
   bool quits = false;               ///< the window closes
+  bool anew = false;                ///< and everything is made anew in it
   bool follow_soon = false;         ///< follow at the next turn, even if the server says nothing
 };
 

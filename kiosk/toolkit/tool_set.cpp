@@ -91,6 +91,21 @@ mesh::document::SelectRegion ToolSet::region(std::int64_t node) const {
 
 bool ToolSet::allow_edit() { return std::ranges::all_of(with<GuardsEdits>(), &GuardsEdits::allow_edit); }
 
+bool ToolSet::takes_input(bool fresh) {
+  return std::ranges::any_of(with<GuardsInput>(), [&](GuardsInput* tool) { return tool->takes_input(fresh); });
+}
+
+bool ToolSet::allow_command(const input::Command& command) {
+  return std::ranges::all_of(with<GuardsInput>(), [&](GuardsInput* tool) { return tool->allow_command(command); });
+}
+
+std::int64_t ToolSet::next_ns(std::int64_t now_ns) const {
+  std::int64_t next = -1;
+  for (const GuardsInput* tool : with<GuardsInput>())
+    if (const std::int64_t wanted = tool->next_ns(now_ns); wanted >= 0 && (next < 0 || wanted < next)) next = wanted;
+  return next;
+}
+
 bool ToolSet::hold(const mesh::document::Edit& edit, bool sends) {
   return std::ranges::any_of(with<HoldsEdits>(), [&](HoldsEdits* tool) { return tool->hold(edit, sends); });
 }

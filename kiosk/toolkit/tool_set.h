@@ -44,6 +44,10 @@ class ToolSet {
   /// Does what a tool shows as a preview; false: none does.
   bool carry_out_preview();
   bool allow_edit();
+  bool takes_input(bool fresh);
+  bool allow_command(const input::Command& command);
+  /// Of the tool that guards input and must be watched first; negative: none must.
+  std::int64_t next_ns(std::int64_t now_ns) const;
   bool would_hold(const mesh::document::Edit& edit) const;
   /// HoldsEdits::hold of the first tool that does.
   bool hold(const mesh::document::Edit& edit, bool sends);
@@ -74,9 +78,9 @@ class ToolSet {
 
   All all_;
   std::vector<Moded> moded_;  ///< all of them
-  AbilityLists<TakesNumbers, HasHandle, Drags, Watches, HasMode, TakesBack, Clears, GuardsEdits, HoldsEdits, SetsShaping, SetsRegion,
-               Previews, MovesView, FollowsView, ColoursModel, HidesGlyphs, TracesPicture, HasStatus, HasTab, InRail, HasOptions, TellsLive,
-               HasMenuEntries, DrawsOverPicture, HasDialogs, AsksQuestions>
+  AbilityLists<TakesNumbers, GuardsInput, HasHandle, Drags, Watches, HasMode, TakesBack, Clears, GuardsEdits, HoldsEdits, SetsShaping,
+               SetsRegion, Previews, MovesView, FollowsView, ColoursModel, HidesGlyphs, TracesPicture, HasStatus, HasTab, InRail,
+               HasOptions, TellsLive, HasMenuEntries, DrawsOverPicture, HasDialogs, AsksQuestions>
       abilities_;
 };
 

@@ -55,6 +55,21 @@ TEST(Outline, a_bend_is_a_crease_for_either_sense_of_the_normals) {
   }
 }
 
+TEST(Outline, the_rim_goes_round_the_shells_that_are_in) {
+  const TestSource source = fan({0, 120, 240});
+  const Outline outline = outline_of(source);
+  const std::vector<std::uint8_t> corners(8, 1);
+  const auto rim_of = [&](const std::vector<std::uint32_t>& in) {
+    return outline.rim(corners, [&](std::uint32_t shell) { return std::ranges::find(in, shell) != in.end(); });
+  };
+  EXPECT_THAT(rim_of({}), IsEmpty());
+  EXPECT_THAT(rim_of({1}), UnorderedElementsAre(NodePair{0, 1}, NodePair{1, 4}, NodePair{4, 5}, NodePair{0, 5}));
+  EXPECT_THAT(rim_of({0, 1}),
+              UnorderedElementsAre(NodePair{1, 2}, NodePair{2, 3}, NodePair{0, 3}, NodePair{1, 4}, NodePair{4, 5}, NodePair{0, 5}))
+      << "the edge between two of them is inside";
+  EXPECT_THAT(rim_of({0, 1, 2}), testing::Contains(NodePair{0, 1})) << "three sheets end there";
+}
+
 TEST(Outline, an_edge_of_three_sheets_is_a_border) {
   const Outline outline = outline_of(fan({0, 120, 240}));
   EXPECT_THAT(outline.borders(), testing::Contains(NodePair{0, 1}));

@@ -13,6 +13,7 @@
 #include "kiosk/tools/parts/file_expression.h"
 #include "kiosk/tools/shaping/axis_pick.h"
 #include "kiosk/tools/shaping/falloff_direction.h"
+#include "kiosk/tools/shaping/falloff_ring.h"
 #include "kiosk/tools/shaping/shaping_options.h"
 #include "kiosk/tools/shaping/typed_number.h"
 #include "mesh/document/edit_kinds.h"
@@ -26,6 +27,31 @@ using toolkit::HistoryFile;
 
 using mesh::Vec3;
 namespace document = mesh::document;
+
+TEST(FalloffRing, lies_where_the_profile_is_a_half) {
+  using mesh::shape::Profile;
+  EXPECT_NEAR(halfway_share({Profile::linear, 0, {}}), 0.5, 1e-12);
+  EXPECT_NEAR(halfway_share({Profile::sharp, 0, {}}), std::sqrt(0.5), 1e-12);
+  EXPECT_NEAR(halfway_share({Profile::linear, 0.4, {}}), 0.3, 1e-12) << "of the way that is left beside the flat top";
+  EXPECT_EQ(halfway_share({Profile::constant, 0, {}}), 0) << "it never falls";
+}
+
+TEST(FalloffRing, a_drag_brings_the_line_under_the_pointer) {
+  using mesh::shape::Profile;
+  // The border is 100 pixels from the foot: the line of a linear falloff is taken at 50.
+  const input::Pixel foot(300, 200);
+  RingDrag drag({Profile::linear, 0, {}}, foot, foot + input::Pixel(50, 0));
+  EXPECT_EQ(drag.flat_at(foot + input::Pixel(50, 0)), 0);
+  EXPECT_NEAR(drag.flat_at(foot + input::Pixel(0, 75)), 0.5, 1e-12) << "in any direction";
+  EXPECT_EQ(drag.flat_at(foot + input::Pixel(20, 0)), 0) << "no flat top is as small as it gets";
+  EXPECT_EQ(drag.flat_at(foot + input::Pixel(500, 0)), RingDrag::kFlattest) << "beyond the border";
+  // Where it is let go, it is taken again.
+  RingDrag again({Profile::linear, 0.5, {}}, foot, foot + input::Pixel(75, 0));
+  EXPECT_NEAR(again.flat_at(foot + input::Pixel(75, 0)), 0.5, 1e-12);
+  EXPECT_NEAR(again.flat_at(foot + input::Pixel(50, 0)), 0, 1e-12);
+  RingDrag of_none({Profile::constant, 0, {}}, foot, foot);
+  EXPECT_EQ(of_none.flat_at(foot + input::Pixel(50, 0)), 0) << "finite where there is no line";
+}
 
 TEST(ShapingOptionsTest, every_option_stands_in_the_edit) {
   ShapingOptions options;

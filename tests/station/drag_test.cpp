@@ -1,7 +1,9 @@
 // From end to end: a deck in the kiosk's window, a selection, a pull with the pointer, and what is in the file afterwards.
+#include <algorithm>
 #include <cmath>
 #include <csignal>
 #include <set>
+#include <sstream>
 
 #include <gtest/gtest.h>
 
@@ -87,6 +89,54 @@ TEST_F(DragTest, the_value_stands_beside_the_pointer_and_a_digit_opens_the_box_t
   ASSERT_FALSE(station_->kiosk().wait_for("drag committed").empty());
   station_->release();
   expect_lifted(station_->save_copy("typed.k"), selected);
+}
+
+TEST_F(DragTest, the_ring_of_the_falloff_is_dragged_to_a_flatter_pull) {
+  const std::vector<std::int64_t> selected = station_->select_middle();
+  const auto ring_after = [&](const std::string& key) {
+    station_->kiosk().skip_lines();
+    station_->key(key);
+    std::stringstream line(station_->kiosk().wait_for("falloff ring "));
+    std::string word;
+    std::size_t pieces = 0;
+    std::array<double, 2> at{};
+    line >> word >> word >> pieces >> word >> at[0] >> at[1];
+    EXPECT_TRUE(line) << "no ring: " << line.str();
+    return at;
+  };
+  ring_after("ctrl+Up");
+  const std::array<double, 2> ring = ring_after("ctrl+Down");
+  const auto handle = station_->handle();
+  ASSERT_TRUE(handle.has_value());
+  const double away = std::hypot(ring[0] - handle->foot_x, ring[1] - handle->foot_y);
+  ASSERT_GT(away, 14) << "the ring isn't in the handle";
+  station_->move(ring[0], ring[1]);
+  station_->settled_aim();
+  ASSERT_TRUE(station_->item("hand").has_value());
+  EXPECT_NE(station_->item("hand")->state.find("flat top 0 %"), std::string::npos) << station_->item("hand")->state;
+  station_->show_people("ring_below_hand");
+  station_->kiosk().skip_lines();
+  station_->press();
+  for (const double more : {5.0, 12.0, 18.0})
+    station_->move(ring[0] + more * (ring[0] - handle->foot_x) / away, ring[1] + more * (ring[1] - handle->foot_y) / away);
+  station_->release();
+  const std::string flat = station_->kiosk().wait_for("falloff flat ");
+  ASSERT_FALSE(flat.empty());
+  EXPECT_GT(std::stod(flat.substr(13)), 0.1) << flat;
+  station_->show_people("ring_dragged");
+
+  station_->pull_arrow(60);
+  commit();
+  const std::map<std::int64_t, Point> before = nodes_of_deck(original_), after = nodes_of_deck(station_->save_copy("flat.k"));
+  const auto way = [&](std::int64_t id) {
+    double squares = 0;
+    for (std::size_t i = 0; i < 3; ++i) squares += (after.at(id)[i] - before.at(id)[i]) * (after.at(id)[i] - before.at(id)[i]);
+    return std::sqrt(squares);
+  };
+  double most = 0;
+  for (const std::int64_t id : selected) most = std::max(most, way(id));
+  const auto whole = std::ranges::count_if(selected, [&](std::int64_t id) { return way(id) > most - 1e-3; });
+  EXPECT_GT(whole, 1) << "without a flat top the grab alone moves as far as the hand";
 }
 
 TEST_F(DragTest, save_writes_the_deck_itself) {

@@ -151,6 +151,13 @@ void Station::start_empty_kiosk() {
   find_window();
 }
 
+void Station::start_exhibition(const std::filesystem::path& settings) {
+  run_kiosk({"--config", settings.string()});
+  ASSERT_FALSE(kiosk_->wait_for("exhibition deck").empty()) << "the exhibition showed no deck\n" << kiosk_->all_output();
+  ASSERT_FALSE(kiosk_->wait_until([](const std::string& line) { return line.starts_with("picture ") && !line.ends_with("none"); }).empty());
+  find_window();
+}
+
 void Station::open_in_another_kiosk(const std::filesystem::path& deck) {
   kiosk_.reset();
   run_kiosk({"--open", deck.string()});

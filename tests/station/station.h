@@ -56,6 +56,8 @@ class Station {
   void open_in_another_kiosk(const std::filesystem::path& deck);
   /// A kiosk that calibrates its display, in a window, with the daemon's settings file; waits for its first page.
   void start_calibration(const std::vector<std::string>& more_arguments = {});
+  /// A kiosk with these settings, of an exhibition; waits until its deck is shown.
+  void start_exhibition(const std::filesystem::path& settings);
   Process& kiosk() { return *kiosk_; }
   VirtualDisplay& display() { return *display_; }
 
@@ -72,6 +74,7 @@ class Station {
   void destroy_window();  ///< as a client that doesn't ask
   void resize_window(int width, int height);
   void type(const std::string& text);
+  void input(const std::vector<std::string>& xdotool_arguments) { xdotool(xdotool_arguments); }
 
   // --- the kiosk's output ---
   /// A thing on the screen, as a line beginning with "item " says it: where, and its state. Empty: it isn't there.

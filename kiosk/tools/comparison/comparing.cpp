@@ -1,6 +1,7 @@
 #include "kiosk/tools/comparison/comparing.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <utility>
 
@@ -147,6 +148,7 @@ void Comparing::forget_field(Pane pane) {
   if (!view.asked && !view.made) return;
   view.asked.reset();
   view.made.reset();
+  view.values.reset();
   view.field_problem.clear();
   if (!main_.made && !other_.made) look_of_.clear();
   if (Result<void> cleared = renderer_.set_field(pane, {}, true); !cleared) failed_ = cleared.error();
@@ -183,6 +185,7 @@ void Comparing::took_field(Pane pane, const ipc::GetField& asked, const ipc::Ans
     if (const auto* failed = std::get_if<ipc::Failed>(&answer))
       view.field_problem = link::was_stopped(*failed) ? "stopped; choose it again to see it" : ipc::error_from(*failed).text();
     view.made.reset();
+    view.values.reset();
     if (Result<void> cleared = renderer_.set_field(pane, {}, true); !cleared) failed_ = cleared.error();
     return;
   }
@@ -201,6 +204,7 @@ void Comparing::took_field(Pane pane, const ipc::GetField& asked, const ipc::Ans
     look_of_ = std::move(kind);
   }
   view.made = *made;
+  view.values = *values;
   trace_.line(fmt::format("field {} generation {} measured {} max {} at {}", asked.field, made->generation, made->measured, made->max,
                           made->max_at));
 }
@@ -213,6 +217,12 @@ void Comparing::dress(render::Picture& picture, const render::TwoViews& both) co
   picture.field.fill(look_);
   picture.field[0].on = main_.made.has_value();
   picture.field[1].on = other_.made.has_value();
+}
+
+std::optional<double> Comparing::value_of(std::size_t index) const {
+  if (!main_.values || index >= main_.values->values().size()) return std::nullopt;
+  const double value = main_.values->values()[index];
+  return std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
 std::string Comparing::words_of(const std::optional<std::uint64_t>& generation) const {

@@ -47,6 +47,11 @@ class Comparing {
   /// `shift`: as in render::TwoViews.
   void dress(render::Picture& picture, const render::TwoViews& both) const;
   CompareFacts facts(const render::TwoViews& both) const;
+  /// What the colours of the model's view are of.
+  enum class Of : std::uint8_t { nothing, nodes, shells };
+  Of coloured_by() const { return !main_.values ? Of::nothing : main_.values->on_nodes() ? Of::nodes : Of::shells; }
+  /// The value of a node or shell in the model's view, by its index; empty: it has none.
+  std::optional<double> value_of(std::size_t index) const;
 
  private:
   /// One of the two views: which state it shows, and by what it is coloured.
@@ -55,7 +60,8 @@ class Comparing {
     std::optional<std::uint64_t> asked_view;
     std::optional<ipc::GetField> asked;  ///< answered or under way
     std::optional<ipc::FieldMade> made;
-    std::string view_problem, field_problem;  ///< why there is no such state, no such field; empty: there is
+    std::shared_ptr<const ipc::FieldValues> values;  ///< of `made`
+    std::string view_problem, field_problem;         ///< why there is no such state, no such field; empty: there is
   };
   using Pane = render::Pane;
 

@@ -169,11 +169,28 @@ void ComparisonTool::draw_panel(PanelLayout& layout) {
     layout.ask([this, wish = *wanted] { set(wish); });
 }
 
+/// The value of what is under the pointer.
+void ComparisonTool::probe(LegendFacts& legend) const {
+  const auto& shown = context_.shown.snapshot;
+  if (!shown || comparing_.shows_older()) return;
+  const std::optional<mesh::NodeIndex> node = context_.pointed.node;
+  const std::optional<mesh::ShellIndex> shell = context_.pointed.shell;
+  if (comparing_.coloured_by() == Comparing::Of::nodes && node && node->value < shown->node_count()) {
+    legend.probed_at = "node " + std::to_string(shown->node_id(node->value));
+    legend.probed = comparing_.value_of(node->value);
+  } else if (comparing_.coloured_by() == Comparing::Of::shells && shell && shell->value < shown->shell_count()) {
+    legend.probed_at = "shell " + std::to_string(shown->shell_id(shell->value));
+    legend.probed = comparing_.value_of(shell->value);
+  }
+}
+
 void ComparisonTool::draw_over_picture(PanelLayout& layout) {
   CompareFacts facts = comparing_.facts(toolkit::two_views(context_.view));
   for (LegendFacts& each : facts.legends) {
     // Of the right one of two views: in the other nothing is pulled.
-    each.before_pull = shows_pull(context_.link) && each.pane == static_cast<std::size_t>(render::Pane::model);
+    const bool model = each.pane == static_cast<std::size_t>(render::Pane::model);
+    each.before_pull = shows_pull(context_.link) && model;
+    if (model) probe(each);
     const DrawnLegend drawn = legend(each, layout);
     if (drawn.wanted) layout.ask([this, limits = *drawn.wanted] { comparing_.set_limits(limits); });
     layout.bottom = std::min(layout.bottom, static_cast<double>(drawn.top) - static_cast<double>(panels::kGrid));

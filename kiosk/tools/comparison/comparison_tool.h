@@ -57,6 +57,7 @@ class ComparisonTool final : public toolkit::Tool,
   void set(const CompareWish& wish);
   Result<void> set_model();
   void resize_view(double by);
+  void probe(LegendFacts& legend) const;
 
   toolkit::ToolContext& context_;
   Comparing comparing_;

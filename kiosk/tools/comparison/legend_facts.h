@@ -21,6 +21,8 @@ struct LegendFacts {
   std::size_t new_nodes = 0;        ///< coloured, but not counted in `min` and `max`
   std::size_t shells_without = 0;   ///< shells whose value is missing
   bool before_pull = false;         ///< a pull is under way, and the values are from before it
+  std::optional<double> probed;     ///< the value under the pointer
+  std::string probed_at;            ///< "node 12"; empty: nothing is under the pointer
   double centre = 0.5;              ///< of the legend, as a share of the picture's width
   double widest = 1;                ///< its maximum width, as the same share
   std::optional<std::size_t> pane;  ///< whose limits may be changed here; empty: only shown

@@ -57,6 +57,13 @@ void ShapingTool::send_typed() {
 }
 
 void ShapingTool::cancel_gesture() {
+  if (ring_drag_) {
+    ring_drag_.reset();
+    options_.flat = flat_before_;
+    context_.follow_soon = true;
+    ++context_.changes;
+    return;
+  }
   if (!dragging()) return;
   pull_.reset();
   if (is_typing() && typing_.what == Typing::For::pull) toolkit::close_dialog(context_);

@@ -81,6 +81,7 @@ bool ShapingTool::gesture(const Gesture& gesture) {
 }
 
 bool ShapingTool::take_handle_gesture(const Gesture& gesture) {
+  if (take_ring_gesture(gesture)) return true;
   if (const auto* taken = std::get_if<input::HandleTaken>(&gesture)) {
     if (taken->handle == Under::cut_handle) return false;
     begin_pull(taken->handle, taken->at);
@@ -104,13 +105,20 @@ bool ShapingTool::take_handle_gesture(const Gesture& gesture) {
 
 Under ShapingTool::under(const input::Pixel& pixel) const {
   const std::optional<render::Handle> shown = shown_handle();
-  return shown && !pull_ && !context_.tools.in_mode() ? part_of_handle(toolkit::aim(context_.view), *shown, pixel) : Under::picture;
+  if (!shown || pull_ || context_.tools.in_mode()) return Under::picture;
+  const stereo::Aim aim = toolkit::aim(context_.view);
+  const Under part = part_of_handle(aim, *shown, pixel);
+  // The line is thin, and the disk may lie all around it.
+  const bool free = part == Under::picture || part == Under::slide_handle;
+  return free && ring_at(aim, shown_ring(), pixel) ? Under::falloff_ring : part;
 }
 
 toolkit::HandlePart ShapingTool::part_at(const input::Pixel& pixel) const {
   const std::optional<render::Handle> shown = shown_handle();
   const Under part = under(pixel);
   if (!shown || part == Under::picture) return {};
+  if (part == Under::falloff_ring)
+    return {ring_in_picture(toolkit::aim(context_.view), shown_ring()), "drag: how far it reaches. " + ring_words(pixel)};
   return {outline_of_part(toolkit::aim(context_.view), *shown, part), drag_words(part)};
 }
 
@@ -152,6 +160,7 @@ void ShapingTool::document_changed() {
   handle_ = Under::lift_handle;
   options_ = for_another_deck(std::move(options_));
   followed_.ask(std::nullopt, 0);
+  ring_drag_.reset();
   if (is_typing()) toolkit::close_dialog(context_);
 }
 
@@ -162,6 +171,50 @@ void ShapingTool::add_to_picture(render::Picture& picture) const {
   const auto& shown = context_.shown.snapshot;
   if (const ipc::FollowedEdges* edges = picture.handle && shown ? followed_.known(shown->info().generation) : nullptr)
     picture.followed_edges = lines_of(*edges, *shown, context_.link.drag.running());
+  picture.halfway_line = shown_ring();
+}
+
+// --- the ring of the falloff ---
+
+/// The line of the last answer, unless something is pulled.
+HalfwayLine ShapingTool::shown_ring() const {
+  const auto& shown = context_.shown.snapshot;
+  if (pull_ || !shown || is_rigid(options_) || !shown_handle()) return {};
+  const ipc::FollowedEdges* answer = followed_.known(shown->info().generation);
+  return answer != nullptr ? halfway_line(*answer) : HalfwayLine();
+}
+
+bool ShapingTool::take_ring_gesture(const Gesture& gesture) {
+  const stereo::Aim aim = toolkit::aim(context_.view);
+  if (const auto* taken = std::get_if<input::HandleTaken>(&gesture); taken != nullptr && taken->handle == Under::falloff_ring) {
+    const auto foot = anchor_ ? stereo::pixel_of(aim, anchor_->at) : std::nullopt;
+    if (!foot) return true;
+    flat_before_ = options_.flat;
+    ring_drag_.emplace(mesh::shape::Falloff{options_.profile, options_.flat, {}}, *foot, taken->at);
+    return true;
+  }
+  if (!ring_drag_) return false;
+  const auto* moved = std::get_if<input::HandleMoved>(&gesture);
+  const auto* released = std::get_if<input::HandleReleased>(&gesture);
+  if (moved == nullptr && released == nullptr) return false;
+  if (const double flat = ring_drag_->flat_at(moved != nullptr ? moved->at : released->at); flat != options_.flat) {
+    options_.flat = flat;
+    ++context_.changes;
+    context_.follow_soon = true;
+  }
+  if (released == nullptr) return true;
+  ring_drag_.reset();
+  context_.trace.line(fmt::format("falloff flat {:.2f}", options_.flat));
+  return true;
+}
+
+/// Where the line under the pointer, or the one that is dragged, lies.
+std::string ShapingTool::ring_words(const input::Pixel& at) const {
+  std::string words = fmt::format("flat top {:.0f} %", 100 * options_.flat);
+  if (ring_drag_ || !anchor_ || !context_.shown.snapshot) return words;
+  if (const auto point = ring_at(toolkit::aim(context_.view), shown_ring(), at))
+    words = "half at " + panels::length_text((*point - anchor_->at).norm(), context_.shown.snapshot->info().length_unit) + ", " + words;
+  return words;
 }
 
 /// What the pull comes to touch, as long as its preview is shown.
@@ -185,6 +238,12 @@ void ShapingTool::trace_picture() {
     if (foot && tip) text = fmt::format("handle {:.1f} {:.1f} {:.1f} {:.1f}", foot->x(), foot->y(), tip->x(), tip->y());
   }
   if (text != traced_) context_.trace.line(traced_ = text);
+  std::string ring = "falloff ring none";
+  if (const HalfwayLine line = shown_ring(); !line.empty()) {
+    const auto at = stereo::pixel_of(now, (line.front()[0] + line.front()[1]) / 2);
+    ring = at ? fmt::format("falloff ring {} at {:.1f} {:.1f}", line.size(), at->x(), at->y()) : "falloff ring behind the eye";
+  }
+  if (ring != traced_ring_) context_.trace.line(traced_ring_ = ring);
   const auto& shown = context_.shown.snapshot;
   const ipc::FollowedEdges* edges = shown ? followed_.known(shown->info().generation) : nullptr;
   const std::uint64_t followed = edges != nullptr ? edges->edge_count : 0;
@@ -252,6 +311,8 @@ PullFacts ShapingTool::pull_facts() const {
 std::string ShapingTool::live_words() const { return pull_ && context_.shown.snapshot ? pull_words(pull_facts()) : std::string(); }
 
 std::string ShapingTool::value_at_hand() const {
+  if (ring_drag_)
+    return context_.hand.at ? ring_words(*context_.hand.at) + (options_.flat == 0 ? "; another profile: D" : "") : std::string();
   return dragging() && !pull_->typed && !is_typing() && context_.shown.snapshot ? pull_value(pull_facts()) : std::string();
 }
 

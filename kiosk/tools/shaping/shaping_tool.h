@@ -11,6 +11,7 @@
 #include "kiosk/toolkit/tool.h"
 #include "kiosk/toolkit/tool_context.h"
 #include "kiosk/tools/shaping/axis_pick.h"
+#include "kiosk/tools/shaping/falloff_ring.h"
 #include "kiosk/tools/shaping/followed_edges.h"
 #include "kiosk/tools/shaping/handle.h"
 #include "kiosk/tools/shaping/pull_preview.h"
@@ -52,7 +53,7 @@ class ShapingTool final : public toolkit::Tool,
   bool in_mode() const override { return axis_pick_.active(); }
   bool leave_mode() override;
   bool take_back() override;
-  bool dragging() const override { return pull_ && !pull_->by_number; }
+  bool dragging() const override { return ring_drag_ || (pull_ && !pull_->by_number); }
   void cancel_gesture() override;
   bool pulling() const override { return pull_.has_value(); }
   bool allow_edit() override { return true; }
@@ -113,6 +114,11 @@ class ShapingTool final : public toolkit::Tool,
   void ask_followed_edges();
   bool take_handle_gesture(const input::Gesture& gesture);
 
+  // --- the ring of the falloff ---
+  HalfwayLine shown_ring() const;
+  bool take_ring_gesture(const input::Gesture& gesture);
+  std::string ring_words(const input::Pixel& at) const;
+
   // --- axes ---
   void set_axis(const std::optional<Axis>& axis, const std::string& what);
   void pick_two_nodes(TwoNodes purpose);
@@ -153,10 +159,13 @@ class ShapingTool final : public toolkit::Tool,
   Pull pulled_;  ///< of the pull under way, or else of the last one
   PullPreview preview_;
   FollowedEdges followed_;
+  std::optional<RingDrag> ring_drag_;
+  double flat_before_ = 0;  ///< the drag of the ring
   Typing typing_;
   panels::EntryState entry_;
   std::string traced_;
   std::uint64_t traced_followed_ = 0;
+  std::string traced_ring_ = "falloff ring none";
   std::string traced_touch_;
 };
 

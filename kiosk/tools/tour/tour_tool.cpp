@@ -80,6 +80,7 @@ void TourTool::end() {
 }
 
 void TourTool::go_to(std::size_t step) {
+  if (step == kSave && context_.options.exhibition) step += step_ > step ? -1 : 1;  // there nothing is saved
   if (step >= kSteps) return end();
   step_ = step;
   began_ = context_.shown.snapshot ? context_.shown.snapshot->info().generation : 0;

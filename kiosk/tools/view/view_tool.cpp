@@ -8,6 +8,7 @@
 #include "kiosk/toolkit/model_boxes.h"
 #include "kiosk/toolkit/picking.h"
 #include "kiosk/toolkit/tool_set.h"
+#include "kiosk/tools/view/colour_key.h"
 #include "kiosk/tools/view/view_keys.h"
 
 namespace prismesh::kiosk::tools::view {
@@ -189,6 +190,10 @@ void ViewTool::draw_tab(PanelLayout& layout) {
   if (const auto chosen = picture_section(others.empty() ? own : others, context_.view.profile.name, profile_names(), layout))
     layout.ask([this, name = *chosen] { take_profile(name); });
   stereo_sections(stereo_facts(), layout);
+}
+
+void ViewTool::draw_over_picture(PanelLayout& layout) {
+  if (context_.shown.snapshot && context_.tools.colours().empty()) colour_key(context_.view.colour, layout);
 }
 
 /// The display's profiles by name, in the menu of the display.

@@ -21,6 +21,7 @@ class ViewTool final : public toolkit::Tool,
                        public toolkit::TakesGestures,
                        public toolkit::MovesView,
                        public toolkit::HasTab,
+                       public toolkit::DrawsOverPicture,
                        public toolkit::HasMenuEntries {
  public:
   explicit ViewTool(toolkit::ToolContext& context) : context_(context), shared_(context) {}
@@ -33,6 +34,7 @@ class ViewTool final : public toolkit::Tool,
   void look(std::int64_t now_ns) override;
   const char* tab() const override { return "Display"; }
   void draw_tab(panels::PanelLayout& layout) override;
+  void draw_over_picture(panels::PanelLayout& layout) override;
   void draw_menu_entries(input::Menu menu, panels::PanelLayout& layout) override;
 
  private:

@@ -85,9 +85,11 @@ TEST(Messages, answers_and_events_survive_a_round_trip) {
   EXPECT_EQ(back.files[0].name, "parts/hood.k");
   EXPECT_EQ(back.files[0].parts, (std::vector<std::int64_t>{3, 7}));
 
-  const Result<FromDaemon> edges = decode_from_daemon(encode_answer(9, FollowedEdges{7, {3, 4, 4, 5}, 2}, 0));
+  const Result<FromDaemon> edges = decode_from_daemon(encode_answer(9, FollowedEdges{7, {3, 4, 4, 5}, 2, {{0.5, 1, 2, 3, 4, 1e-9}}}, 0));
   ASSERT_TRUE(edges) << edges.error().text();
   EXPECT_EQ(std::get<FollowedEdges>(std::get<Answer>(edges->message)).nodes, (std::vector<std::uint32_t>{3, 4, 4, 5}));
+  EXPECT_EQ(std::get<FollowedEdges>(std::get<Answer>(edges->message)).halfway,
+            (std::vector<std::array<double, 6>>{{0.5, 1, 2, 3, 4, 1e-9}}));
 
   const Result<FromDaemon> event = decode_from_daemon(encode_event(DragEnded{4, true, "why"}));
   ASSERT_TRUE(event) << event.error().text();

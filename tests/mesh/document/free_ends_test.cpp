@@ -1,4 +1,5 @@
-// Free endings through a document: what scripts and the kiosk get, and what they are told.
+// Free endings through a document: what scripts and the kiosk get, and what they are told. The lines that tell of a pull.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -8,7 +9,7 @@
 
 #include "mesh/document/drag.h"
 #include "mesh/document/edit_json.h"
-#include "mesh/document/followed_edges.h"
+#include "mesh/document/pull_lines.h"
 #include "tests/mesh/document/document_fixture.h"
 
 namespace prismesh::mesh::document {
@@ -136,19 +137,49 @@ TEST(FreeEnds, leave_a_grabbed_side_and_tell) {
 TEST(FreeEnds, are_told_before_the_pull) {
   Document document = make_strip();
   const auto edges = [&](const std::string& text) {
-    const auto found = find_followed_edges(document.current(), edit_of(text));
+    const auto found = find_pull_lines(document.current(), edit_of(text));
     EXPECT_TRUE(found) << found.error().text();
     std::size_t at_end = 0;
-    for (const auto& edge : *found)
+    for (const auto& edge : found->followed)
       at_end += document.current().model.position(edge[0]).x() == 200 && document.current().model.position(edge[1]).x() == 200 ? 1 : 0;
-    return std::pair(found->size(), at_end);
+    return std::pair(found->followed.size(), at_end);
   };
   EXPECT_EQ(edges(lift_by_10(kMiddle)), std::pair(std::size_t{26}, std::size_t{10})) << "both sides from 120 on, and the end";
   EXPECT_EQ(edges(lift_by_10(kMiddle, R"(,"free_ends":"weighted")")), std::pair(std::size_t{0}, std::size_t{0}));
   EXPECT_EQ(edges(lift_by_10(kMiddle, R"(,"origin":"free_edge")")), std::pair(std::size_t{10}, std::size_t{10}));
-  const auto refused = find_followed_edges(document.current(), edit_of(R"({"edit":"undo"})"));
+  const auto refused = find_pull_lines(document.current(), edit_of(R"({"edit":"undo"})"));
   ASSERT_FALSE(refused);
   EXPECT_THAT(refused.error().message, HasSubstr("moves no nodes"));
+}
+
+TEST(PullLines, the_line_halfway_lies_where_the_weight_is_a_half) {
+  Document document = make_strip();
+  const auto ask = [&](const std::string& falloff) {
+    return find_pull_lines(document.current(), edit_of(lift_by_10(kMiddle, R"(,"falloff":)" + falloff)));
+  };
+  // Along x only, the strip from 50 on rises from x = 50 to the grab at 120: half at 85 with a profile that is symmetric.
+  const auto linear = ask(R"({"profile":"linear","along":[1,0,0]})");
+  ASSERT_TRUE(linear) << linear.error().text();
+  ASSERT_EQ(linear->halfway.size(), 10u) << "a piece for each shell across the strip";
+  for (const auto& piece : linear->halfway)
+    for (const Vec3& end : piece) EXPECT_NEAR(end.x(), 85, 1e-9);
+  // A flat top of 40 % of the way: the weight falls from 1 at 92, so it is a half at 71.
+  const auto flat = ask(R"({"profile":"linear","along":[1,0,0],"flat":0.4})");
+  ASSERT_TRUE(flat) << flat.error().text();
+  ASSERT_EQ(flat->halfway.size(), 10u);
+  for (const auto& piece : flat->halfway)
+    for (const Vec3& end : piece) EXPECT_NEAR(end.x(), 71, 1e-9);
+}
+
+TEST(PullLines, the_line_halfway_is_closed_round_a_bump) {
+  Document document = make_strip();
+  const auto lines = find_pull_lines(document.current(), edit_of(lift_by_10(kMiddle, R"(,"free_ends":false)")));
+  ASSERT_TRUE(lines) << lines.error().text();
+  ASSERT_FALSE(lines->halfway.empty());
+  std::vector<Vec3> ends;
+  for (const auto& piece : lines->halfway) ends.insert(ends.end(), piece.begin(), piece.end());
+  for (const Vec3& end : ends)
+    EXPECT_EQ(std::ranges::count_if(ends, [&](const Vec3& other) { return (other - end).norm() < 1e-9; }), 2) << "each end is met once";
 }
 
 TEST(FreeEnds, are_written_as_they_are_read) {
