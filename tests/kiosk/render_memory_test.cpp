@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "kiosk/render/make_levels.h"
+#include "kiosk/render/row_texture.h"
 #include "tests/kiosk/driver_memory.h"
 #include "tests/kiosk/render_test.h"
 
@@ -197,6 +198,27 @@ TEST_F(RenderMemory, changes_no_bit_of_any_picture_where_the_limit_is_not_reache
   const Seen limited = work(source, {.samples = 4, .video_memory = 1000 * kMiB});
   EXPECT_TRUE(free.at_rest == limited.at_rest && free.in_pieces == limited.in_pieces);
   EXPECT_EQ(renderer_->video_memory().given_up, GivenUp());
+}
+
+TEST_F(RenderMemory, frees_at_once_what_is_given_up) {
+  const test::TestSource source = sheets();
+  constexpr std::size_t kPixels = std::size_t{kMemoryWidth} * kMemoryHeight, kValues = 4'000'000;
+  const auto show_both = [&](std::size_t limit) {
+    make_renderer({.samples = 4, .video_memory = limit});
+    show(source);
+    Picture picture = fitted("mono", "iso", kMemoryWidth, kMemoryHeight);
+    draw(picture, kMemoryWidth, kMemoryHeight);
+    picture.moving = true;
+    picture.view = stereo::orbit(picture.view, 0.3, 0);
+    draw(picture, kMemoryWidth, kMemoryHeight);
+    return renderer_->video_memory();
+  };
+  const std::size_t free = show_both(1000 * kMiB).planned;
+  const std::size_t before = show_both(free + kValues * 8 - 3 * kMiB).held;
+  EXPECT_EQ(report_.memory.given_up, GivenUp());
+  EXPECT_TRUE(renderer_->set_field(Pane::model, std::vector<float>(kValues, 0.5F), true));
+  EXPECT_EQ(renderer_->video_memory().given_up, (GivenUp{true, true, false, false}));
+  EXPECT_EQ(held(), before + RowTexture::bytes_for(kValues, {0, 0, 0, 8}) - kPixels * (8 * 4 + 16) - kPixels * (8 + 16));
 }
 
 TEST_F(RenderMemory, gets_back_what_was_given_up_when_there_is_room_again) {
