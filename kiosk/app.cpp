@@ -114,6 +114,7 @@ Result<void> run(const AppOptions& options) {
   what.profile = *profile;
   what.fixed_eyes_mm = options.fixed_eyes_mm;
   what.panel_latency_ms = settings->display.latency_ms;
+  what.video_memory = static_cast<std::size_t>(settings->display.video_memory_mb) << 20;
   what.follows_others = options.follow;
   what.title = options.title;
   what.trace = options.trace;

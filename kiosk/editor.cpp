@@ -262,6 +262,27 @@ render::Picture Editor::picture() const {
   return picture;
 }
 
+void Editor::set_report(const render::DrawReport& report) {
+  context_.glyphs_left_out = report.glyphs_left_out;
+  context_.video_memory = report.memory;
+  if (report.memory.limit > 0) tell_video_memory();
+}
+
+/// Says what is given up when it is more than was said of this document, not when it is less.
+void Editor::tell_video_memory() {
+  const render::VideoMemory& memory = context_.video_memory;
+  if (std::exchange(told_document_, context_.link.document.number()) != context_.link.document.number()) {
+    told_given_up_ = {};
+    told_exceeded_ = false;
+  }
+  const render::GivenUp all = told_given_up_.with(memory.given_up);
+  if (all == told_given_up_ && (told_exceeded_ || !memory.is_exceeded())) return;
+  told_given_up_ = all;
+  told_exceeded_ = told_exceeded_ || memory.is_exceeded();
+  notices_.say(Notice::Kind::warning, render::sentence_of(memory));
+  ++context_.changes;
+}
+
 void Editor::trace_picture() {
   if (!context_.trace.on()) return;
   const stereo::Aim now = toolkit::aim(context_.view);
@@ -270,6 +291,9 @@ void Editor::trace_picture() {
   for (int i = 0; i < 16; ++i) text += fmt::format(" {}", clip.data()[i]);
   if (text != traced_aim_) context_.trace.line(traced_aim_ = text);
   for (toolkit::TracesPicture* tool : tools_.with<toolkit::TracesPicture>()) tool->trace_picture();
+  const render::VideoMemory& memory = context_.video_memory;
+  text = "video memory " + render::megabytes_of(memory) + (memory.given_up.any() ? ": " + render::in_words(memory.given_up) : "");
+  if (text != traced_memory_) context_.trace.line(traced_memory_ = text);
   text = notices_.empty() ? "notice none" : notices::trace_of(notices_.front());
   text.replace(0, std::string_view("notice").size(), "reads");
   if (text != traced_notice_) context_.trace.line(traced_notice_ = text);

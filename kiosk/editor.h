@@ -85,7 +85,8 @@ class Editor {
   void begin_number(const std::string& text, const toolkit::Pointer& pointer);
 
   render::Picture picture() const;
-  void set_report(const render::DrawReport& report) { context_.glyphs_left_out = report.glyphs_left_out; }
+  /// What the last picture left out, and the video memory that it took.
+  void set_report(const render::DrawReport& report);
   /// What the panels show.
   toolkit::ToolContext& context() { return context_; }
   const toolkit::ToolContext& context() const { return context_; }
@@ -96,6 +97,7 @@ class Editor {
   void trace_picture();
 
  private:
+  void tell_video_memory();
   void take_newest();
   void own_command(std::uint8_t number);
   void toggle_cover(toolkit::Cover cover);
@@ -114,6 +116,11 @@ class Editor {
   bool result_left_ = false;
   std::string traced_aim_;
   std::string traced_notice_ = "reads none";
+  // What was said of video memory about a document.
+  std::uint64_t told_document_ = 0;
+  render::GivenUp told_given_up_;
+  bool told_exceeded_ = false;
+  std::string traced_memory_;
 };
 
 }  // namespace prismesh::kiosk

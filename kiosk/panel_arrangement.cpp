@@ -252,6 +252,8 @@ void PanelArrangement::build_dock(ToolContext& context, PanelLayout& layout) {
     tab("Model", [&] {
       panels::model_facts(document_facts(context));
       panels::history_facts({context.link.document.history_bytes(), context.link.document.history_cap()});
+      if (const render::VideoMemory& memory = context.video_memory; memory.limit > 0)
+        panels::video_memory_facts({render::megabytes_of(memory), render::in_words(memory.given_up)});
     });
     ImGui::EndTabBar();
   }

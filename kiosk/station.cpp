@@ -69,7 +69,7 @@ Station::Station(const StationOptions& options, std::unique_ptr<render::Renderer
 }
 
 Result<std::unique_ptr<Station>> Station::create(const StationOptions& options) {
-  Result<std::unique_ptr<render::Renderer>> renderer = render::Renderer::create({});
+  Result<std::unique_ptr<render::Renderer>> renderer = render::Renderer::create({.video_memory = options.video_memory});
   if (!renderer) return fail(renderer.error());
   Result<panels::Gui> gui = panels::Gui::create();
   if (!gui) return fail(gui.error());

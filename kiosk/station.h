@@ -25,6 +25,7 @@ struct StationOptions {
   input::MouseLayout mouse = input::default_mouse_layout();
   std::optional<mesh::Vec3> fixed_eyes_mm;  ///< between the eyes; goes before what a tracker says
   double panel_latency_ms = 10;
+  std::size_t video_memory = 0;  ///< bytes; 0: no limit
   bool trace = false;
   bool follows_others = false;  ///< moves together with other kiosks that do
   std::string title{};          ///< says at the top of the view what is shown

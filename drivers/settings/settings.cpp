@@ -328,6 +328,7 @@ class Reader {
                  number("latency_ms", settings_.display.latency_ms, 0, 200, " ms"),
                  choice("screen", {"usual", "x11", "bare"}, [this](std::size_t i) { settings_.display.screen = ScreenKind(i); }),
                  connector_name("connector", settings_.display.connector), mode("mode", settings_.display.mode),
+                 whole("video_memory_mb", settings_.display.video_memory_mb, 0, 1'048'576, " MB"),
                  flag("console_switching", settings_.display.console_switching)}},
         Section{"hand", {name_or_file("mouse", settings_.hand.mouse, folder_, "a layout's name or file in quotes, like \"right-orbit\"")}},
         Section{"document",

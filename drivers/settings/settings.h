@@ -86,9 +86,10 @@ struct DisplaySettings {
   std::string profile = "prism-mask";  ///< a built-in name, or a profile file (relative to the settings file)
   double latency_ms = 10;              ///< from a row's scan-out to its light, in the panel's electronics and pixels
   ScreenKind screen = ScreenKind::usual;
-  std::string connector;           ///< of the bare screen, "DP-1"; empty: the first with a monitor
-  ModeSetting mode;                ///< of the bare screen
-  bool console_switching = false;  ///< on the bare screen Ctrl+Alt+F1 and so on show a text console
+  std::string connector;             ///< of the bare screen, "DP-1"; empty: the first with a monitor
+  ModeSetting mode;                  ///< of the bare screen
+  std::int64_t video_memory_mb = 0;  ///< max. memory of the graphics card that the kiosk's picture of the model takes; 0: no limit
+  bool console_switching = false;    ///< on the bare screen Ctrl+Alt+F1 and so on show a text console
 };
 
 /// How the user works with the kiosk.

@@ -39,4 +39,13 @@ void history_facts(const HistoryFacts& history) {
   fact("kept for undo", fmt::format("{:.1f} of {} MB", static_cast<double>(history.bytes) / kMegabyte, history.cap / kMegabyte));
 }
 
+void video_memory_facts(const VideoMemoryFacts& memory) {
+  if (memory.megabytes.empty()) return;
+  fact("video memory", memory.megabytes);
+  if (memory.given_up.empty()) return;
+  ImGui::PushFont(small_font());
+  ImGui::TextWrapped("%s", memory.given_up.c_str());
+  ImGui::PopFont();
+}
+
 }  // namespace prismesh::kiosk::panels

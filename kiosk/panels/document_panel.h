@@ -9,5 +9,6 @@ namespace prismesh::kiosk::panels {
 void model_facts(const DocumentFacts& document);
 /// What the states kept for undo take.
 void history_facts(const HistoryFacts& history);
+void video_memory_facts(const VideoMemoryFacts& memory);
 
 }  // namespace prismesh::kiosk::panels

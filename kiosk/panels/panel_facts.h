@@ -24,6 +24,11 @@ struct HistoryFacts {
   std::uint64_t bytes = 0, cap = 0;
 };
 
+/// What the picture takes on the graphics card and what is given up for it, in words; without words: nothing is said.
+struct VideoMemoryFacts {
+  std::string megabytes, given_up;
+};
+
 /// What stands in the middle while there is no model to see.
 struct StateFacts {
   bool connected = false;

@@ -51,6 +51,12 @@ Result<void> ContactMarks::set_touching(const ModelTable& table, const PreviewPa
   return upload(touched_, corners_of(table, others));
 }
 
+std::size_t ContactMarks::bytes_held() const {
+  std::size_t bytes = curve_.bytes_held() + vectors_.bytes_held();
+  for (const Shells* shells : {&chosen_, &shells_, &moved_, &touched_}) bytes += shells->connectivity.bytes_held();
+  return bytes;
+}
+
 std::size_t ContactMarks::bytes_uploaded() const {
   std::size_t bytes = curve_.bytes_uploaded() + vectors_.bytes_uploaded();
   for (const Shells* shells : {&chosen_, &shells_, &moved_, &touched_}) bytes += shells->connectivity.bytes_uploaded();

@@ -34,6 +34,7 @@ class ContactMarks {
   const FreeLines& curve() const { return curve_; }
   const FreeLines& vectors() const { return vectors_; }
   std::size_t bytes_uploaded() const;
+  std::size_t bytes_held() const;
 
  private:
   ContactPicture picture_;

@@ -62,6 +62,20 @@ bool EyeImages::make_resolved(gl::Framebuffer& framebuffer, gl::Renderbuffer& co
   return glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
 }
 
+std::size_t EyeImages::bytes_of_pixel(int samples, bool aside) {
+  const std::size_t scene = static_cast<std::size_t>(samples) * 8;  // colour, and depth with stencil
+  const std::size_t flat = 4 + 4 + (aside ? 4 : 0);
+  return scene + 2 * flat;
+}
+
+std::size_t EyeImages::bytes_held() const {
+  if (!scene_) return 0;
+  const std::size_t pixels = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
+  std::size_t bytes = pixels * bytes_of_pixel(samples_, false);
+  for (const Flat& flat : flat_) bytes += flat.aside ? pixels * 4 : 0;
+  return bytes;
+}
+
 void EyeImages::bind_scene() const {
   glBindFramebuffer(GL_FRAMEBUFFER, scene_.get());
   glViewport(0, 0, width_, height_);

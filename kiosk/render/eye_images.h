@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 
 #include "kiosk/render/gl.h"
 
@@ -24,6 +25,10 @@ class EyeImages {
   void bind_flat(int eye) const;
   /// Binds the flat image of an eye as a texture.
   void bind_texture(int eye, unsigned unit) const;
+  /// Bytes on the graphics card for a pixel of the images. `aside`: with those that are put aside.
+  static std::size_t bytes_of_pixel(int samples, bool aside);
+  std::size_t bytes_held() const;
+  int samples() const { return samples_; }
   int width() const { return width_; }
   int height() const { return height_; }
 

@@ -23,6 +23,8 @@ std::optional<Colour> FieldLook::colour_of(double value) const {
 
 FieldColours::FieldColours() : values_(kValueTexel) {}
 
+std::size_t FieldColours::bytes_for(std::size_t values) { return RowTexture::bytes_for(values, kValueTexel); }
+
 Result<void> FieldColours::set(std::span<const float> values, bool on_nodes) {
   shown_ = 0;
   const Result<bool> renewed = values_.reserve(values.size(), "values");

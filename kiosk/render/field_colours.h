@@ -36,6 +36,9 @@ class FieldColours {
   /// Uniform `field_kind` of the shell shader: 0 none, 1 values of nodes, 2 of shells. 0 if the number of values doesn't fit the model.
   int kind_for(const ModelTable& table) const;
   void bind(unsigned values_unit, unsigned map_unit, const FieldLook& look);
+  /// Bytes on the graphics card for so many values.
+  static std::size_t bytes_for(std::size_t values);
+  std::size_t bytes_held() const { return values_.bytes_held() + (map_ ? kColourMapSteps * 4 : 0); }
   std::size_t bytes_uploaded() const { return values_.bytes_uploaded(); }
 
  private:

@@ -13,6 +13,8 @@ class FlatPass {
   /// Draws into the bound framebuffer. The viewport must be set.
   void draw(const Picture& picture, const EyeView& eye) const;
 
+  std::size_t bytes_held() const { return gl::bytes_held(segment_buffer_); }
+
  private:
   void draw_rectangle(const PixelRect& band, const EyeImage& image) const;
   void draw_lasso(const std::vector<Eigen::Vector2d>& corners, const EyeImage& image) const;

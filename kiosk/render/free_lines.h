@@ -19,6 +19,7 @@ class FreeLines {
 
   const LineSet& lines() const { return lines_; }
   const RowTexture& positions() const { return positions_; }
+  std::size_t bytes_held() const { return positions_.bytes_held() + lines_.texture.bytes_held(); }
   std::size_t bytes_uploaded() const { return positions_.bytes_uploaded() + lines_.texture.bytes_uploaded(); }
 
  private:

@@ -54,6 +54,15 @@ Result<Program> Program::link(const std::string& name, std::string_view vertex, 
   return program;
 }
 
+std::size_t bytes_held(const Buffer& buffer) {
+  if (!buffer) return 0;
+  GLint64 bytes = 0;
+  glBindBuffer(GL_COPY_READ_BUFFER, buffer.get());  // a binding that nothing is drawn from
+  glGetBufferParameteri64v(GL_COPY_READ_BUFFER, GL_BUFFER_SIZE, &bytes);
+  glBindBuffer(GL_COPY_READ_BUFFER, 0);
+  return static_cast<std::size_t>(bytes);
+}
+
 bool has_clip_distance() {
   GLint count = 0;
   glGetIntegerv(GL_NUM_EXTENSIONS, &count);

@@ -1,6 +1,7 @@
 // RAII for OpenGL ES objects, and shader programs with errors as text.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -55,6 +56,9 @@ using Buffer = Object<detail::gen_buffers, detail::delete_buffers>;
 using VertexArray = Object<detail::gen_arrays, detail::delete_arrays>;
 using Framebuffer = Object<detail::gen_framebuffers, detail::delete_framebuffers>;
 using Renderbuffer = Object<detail::gen_renderbuffers, detail::delete_renderbuffers>;
+
+/// Bytes that a buffer has on the graphics card; 0 for none.
+std::size_t bytes_held(const Buffer& buffer);
 
 class Program {
  public:

@@ -14,6 +14,8 @@ class HandlePass {
   /// Draws into the bound framebuffer, after the model. Leaves the depth test on (GL_LEQUAL) and blending off.
   void draw(const std::vector<HandlePiece>& pieces, const EyeView& eye) const;
 
+  std::size_t bytes_held() const { return gl::bytes_held(buffer_); }
+
  private:
   const Shaders& shaders_;
   gl::VertexArray array_;

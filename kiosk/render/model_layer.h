@@ -1,6 +1,7 @@
 // All data of a model that the passes draw, on the GPU and on the processor. Updated from snapshots and previews.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -99,6 +100,11 @@ class ModelLayer {
   };
   Result<ShadowCaster> shadow_caster();
 
+  /// Bytes on the graphics card, with those of shell_draws().
+  std::size_t bytes_held() const;
+  /// Bytes that a model's nodes and shells hold, without the order in which shells are drawn.
+  static std::size_t bytes_for(const ModelSource& source);
+
   /// Bytes uploaded over the layer's life.
   std::size_t bytes_uploaded() const;
 
@@ -112,6 +118,7 @@ class ModelLayer {
   const std::vector<std::uint32_t>& line_nodes() const { return line_nodes_; }
 
  private:
+  std::array<const RowTexture*, 14> row_textures() const;
   Result<void> update_line_elements(bool changed);
   void forget_visible_nodes();
   Result<void> choose_preview_glyphs(std::size_t cap);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "base/parallel_for.h"
 #include "kiosk/render/palette.h"
@@ -34,6 +35,33 @@ std::uint16_t as_snorm16(double value) {
 void add_sorted(std::vector<std::uint32_t>& set, std::uint32_t value) {
   const auto place = std::lower_bound(set.begin(), set.end(), value);
   if (place == set.end() || *place != value) set.insert(place, value);
+}
+
+/// Where the box of all nodes is so many times as wide as the middle half of them, few nodes are far away from the others, at whose
+/// distance single precision would make one place of the model.
+constexpr double kFarOut = 1e4;
+
+struct Spread {
+  Vec3 median;
+  double width = 0;  ///< of the middle half of the nodes, along the widest axis; > 0
+};
+
+/// Of some 2,000 nodes at even steps; nothing if half of them are in one place.
+std::optional<Spread> spread_of_nodes(const ModelTable& table) {
+  const std::size_t step = table.node_count() / 2'000 + 1;
+  std::array<std::vector<double>, 3> along;
+  for (std::size_t n = 0; n < table.node_count(); n += step)
+    if (const Vec3 at = table.position(n); finite(at))
+      for (std::size_t axis = 0; axis < 3; ++axis) along[axis].push_back(at[static_cast<Eigen::Index>(axis)]);
+  if (along[0].empty()) return std::nullopt;
+  Spread spread;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    std::vector<double>& values = along[axis];
+    std::sort(values.begin(), values.end());
+    spread.median[static_cast<Eigen::Index>(axis)] = values[values.size() / 2];
+    spread.width = std::max(spread.width, values[values.size() * 3 / 4] - values[values.size() / 4]);
+  }
+  return spread.width > 0 ? std::optional(spread) : std::nullopt;
 }
 
 template <class T>
@@ -99,6 +127,8 @@ void ModelTextures::choose_origin(const ModelTable& table) {
   for (std::size_t n = 0; n < table.node_count(); ++n)
     if (const Vec3 point = table.position(n); finite(point)) box.add(point);
   origin_ = box.empty() ? Vec3(Vec3::Zero()) : Vec3(0.5 * (box.low + box.high));
+  if (const std::optional<Spread> spread = spread_of_nodes(table); spread && (box.high - box.low).maxCoeff() > kFarOut * spread->width)
+    origin_ = spread->median;
 }
 
 void ModelTextures::update_positions(const ModelTable& table, ModelChanges& changes) {
@@ -219,7 +249,7 @@ ModelTextures::ShellRow ModelTextures::build_row(const ModelTable& table, std::s
       const std::uint32_t node = nodes.node[k].value;
       add_sorted(row.depends_on, static_cast<std::uint32_t>(node / kChunkSize));
       corner[k] = table.position(node) - origin_;
-      whole = finite(corner[k]);
+      whole = corner[k].cast<float>().allFinite();  // as the card holds it
       row.nodes[i][k] = node;
     }
     std::uint32_t word = static_cast<std::uint32_t>(colour_of_part(table.shell_part(s).value, source.part_count())) |

@@ -17,6 +17,8 @@ class NodePass {
   /// proportional to the number of chunks. Leaves the depth test on (GL_LEQUAL) and the depth mask on.
   void draw(const ModelLayer& model, const Frame& frame) const;
 
+  std::size_t bytes_held() const { return gl::bytes_held(octahedra_.indices) + gl::bytes_held(squares_.indices); }
+
  private:
   /// Indices of one solid for each node of a chunk. Corners of node n start at n * the solid's number of corners.
   struct Solid {

@@ -15,6 +15,7 @@ class PaintTexture {
   Result<void> set(std::span<const PartPaint> paints);
   /// Sets the uniforms of programs that read kPaint of shaders.cpp. `see_through`: they draw the transparent parts, else the others.
   void use(const gl::Program& program, bool see_through) const;
+  std::size_t bytes_held() const { return texture_.bytes_held(); }
   bool any_transparent() const { return any_transparent_; }
 
  private:

@@ -32,7 +32,9 @@ struct DrawnScene {
   std::vector<ComposedImage> images;
   int width = 0, height = 0;
   std::uint64_t scene_version = 0;
+  bool coarse = false;  ///< drawn as one in motion
 
+  /// Whether the same is seen, coarse or not.
   bool same_scene(const DrawnScene& other) const {
     const auto facts = [](const DrawnScene& d) {
       const Picture& p = d.picture;
@@ -56,6 +58,10 @@ bool same_composition(const Picture& a, const Picture& b) {
 std::size_t next_count(std::size_t count, std::int64_t took_ns, std::int64_t budget_ns) {
   const double share = std::clamp(static_cast<double>(budget_ns) / static_cast<double>(took_ns), 0.5, 2.0);
   return std::clamp(static_cast<std::size_t>(static_cast<double>(count) * share), kSmallestPiece, kLargestPiece);
+}
+
+std::size_t bytes_of_items(int width, int height) {
+  return static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 8;  // items and depth
 }
 
 EyeView eye_view(const Picture& picture, const ComposedImage& image, int width, int height) {
@@ -130,10 +136,24 @@ struct Renderer::Impl {
   std::size_t items_at_once = kFirstPiece;
   Figures figures;
 
+  MemoryPlan plan;
+  bool has_moved = false;  ///< a picture in motion was drawn
+  /// What the levels took that were made last, and of how many shells they were.
+  std::size_t levels_bytes = 0, levels_shells = 0;
+
   Impl(const RendererOptions& wanted, Shaders linked) : options(wanted), shaders(std::move(linked)), scene(shaders), flat(shaders) {}
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
 
+  std::size_t bytes_held() const;
+  MemoryNeeds needs() const;
+  MemoryNeeds needs_with(const ModelSource& source, const ModelLayer& into) const;
+  Result<void> keep_to(const MemoryNeeds& wanted);
+  Result<void> keep_to_limit(const Picture& picture, int width, int height);
+  int samples_at_rest() const { return plan.given_up.multisampling ? 1 : options.samples; }
+  /// The images that a moving picture is drawn into.
+  Images& moving_images() { return plan.given_up.moving_images ? fine : coarse; }
+  bool is_kept_at_rest(const DrawnScene& wanted) const { return fine.kept && !fine.kept->coarse && fine.kept->same_scene(wanted); }
   Result<void> draw_scene(Images& images, const Picture& picture, int width, int height, int samples);
   Result<void> prepare(Images& images, const Picture& picture, int samples);
   void draw_views(const Picture& picture, const EyeView& eye, int width, DrawSpan& span);
@@ -164,7 +184,88 @@ Result<std::unique_ptr<Renderer>> Renderer::create(const RendererOptions& option
   return std::unique_ptr<Renderer>(new Renderer(std::make_unique<Impl>(wanted, std::move(*shaders))));
 }
 
+std::size_t Renderer::Impl::bytes_held() const {
+  std::size_t bytes = layer.bytes_held() + other_layer.bytes_held() + fine.eyes.bytes_held() + coarse.eyes.bytes_held();
+  bytes += scene.bytes_held() + flat.bytes_held() + weave.bytes_held() + paint.bytes_held();
+  for (const FieldColours& field : fields) bytes += field.bytes_held();
+  if (item_framebuffer) bytes += bytes_of_items(items.width, items.height);
+  return bytes;
+}
+
+/// Those of what is held now.
+MemoryNeeds Renderer::Impl::needs() const {
+  MemoryNeeds needs;
+  needs.fixed_bytes = bytes_held() - fine.eyes.bytes_held() - coarse.eyes.bytes_held();
+  std::size_t shells = 0;
+  for (const ModelLayer* each : {&layer, &other_layer}) {
+    needs.fixed_bytes -= each->shell_draws().order_bytes() + each->shell_draws().levels_bytes();
+    shells += each->empty() ? 0 : each->table().shell_count();
+  }
+  const EyeImages& any = fine.eyes.width() > 0 ? fine.eyes : coarse.eyes;
+  needs.image_pixels = static_cast<std::size_t>(any.width()) * static_cast<std::size_t>(any.height());
+  needs.samples = options.samples;
+  needs.in_motion = has_moved;
+  needs.order_bytes = ShellDraws::order_bytes_of(shells);
+  if (!layer.empty() && layer.table().shell_count() == levels_shells) needs.levels_bytes = levels_bytes;
+  return needs;
+}
+
+/// Those with a model in place of the one of a layer.
+MemoryNeeds Renderer::Impl::needs_with(const ModelSource& source, const ModelLayer& into) const {
+  MemoryNeeds wanted = needs();
+  const std::size_t before = into.empty() ? 0 : ModelLayer::bytes_for(into.table().source());
+  wanted.fixed_bytes += std::max(ModelLayer::bytes_for(source), before) - before;
+  const std::size_t shells = source.size(ipc::SnapshotArray::shell_nodes);
+  wanted.order_bytes += ShellDraws::order_bytes_of(shells);
+  if (!into.empty()) wanted.order_bytes -= ShellDraws::order_bytes_of(into.table().shell_count());
+  if (&into == &layer && shells != levels_shells) wanted.levels_bytes = 0;
+  return wanted;
+}
+
+/// Gives up what the plan says, before anything new is held.
+Result<void> Renderer::Impl::keep_to(const MemoryNeeds& wanted) {
+  const MemoryPlan next = plan_memory(wanted, options.video_memory);
+  const bool others = !(next.given_up == plan.given_up);
+  plan = next;
+  if (options.video_memory == 0 || !others) return {};
+  if (fine.eyes.width() > 0 && fine.eyes.samples() != samples_at_rest()) {
+    pieces.reset();
+    fine = {};
+  }
+  if (plan.given_up.moving_images) coarse = {};
+  if (fine.kept && fine.kept->coarse && !plan.given_up.moving_images) fine.kept.reset();
+  pieces.reset();
+  item_pieces.reset();
+  if (plan.given_up.levels && !layer.empty())
+    if (Result<void> done = layer.shell_draws().give_up_levels(layer.table()); !done) return done;
+  for (ModelLayer* each : {&layer, &other_layer})
+    if (Result<void> done = each->shell_draws().set_order_in_pieces(plan.given_up.order); !done) return done;
+  return {};
+}
+
+/// For a picture that is about to be drawn.
+Result<void> Renderer::Impl::keep_to_limit(const Picture& picture, int width, int height) {
+  if (options.video_memory == 0) return {};
+  has_moved = has_moved || picture.moving || picture.waiting;
+  MemoryNeeds wanted = needs();
+  const ComposedImage& first = composition.images.front();
+  wanted.image_pixels = static_cast<std::size_t>(first.width) * static_cast<std::size_t>(first.height);
+  if (item_framebuffer) wanted.fixed_bytes -= bytes_of_items(items.width, items.height);
+  wanted.fixed_bytes += bytes_of_items(width, height);  // of the same size
+  wanted.fixed_bytes -= weave.bytes_held();
+  wanted.fixed_bytes += WeavePass::bytes_of_phases(composition.phases.columns, composition.phases.rows);
+  if (picture.shadows) wanted.fixed_bytes += ShadowPass::max_bytes() - scene.shadow_bytes();
+  return keep_to(wanted);
+}
+
+VideoMemory Renderer::video_memory() const {
+  const std::size_t held = impl_->bytes_held();
+  return {held, impl_->options.video_memory, impl_->plan.bytes, impl_->plan.given_up};
+}
+
 Result<void> Renderer::set_model(std::shared_ptr<const ModelSource> model) {
+  if (model && impl_->options.video_memory > 0)
+    if (Result<void> kept = impl_->keep_to(impl_->needs_with(*model, impl_->layer)); !kept) return kept;
   Result<void> done = impl_->layer.set_model(model);
   impl_->model = done ? std::move(model) : nullptr;
   ++impl_->scene_version;
@@ -175,15 +276,27 @@ Result<void> Renderer::set_model(std::shared_ptr<const ModelSource> model) {
 Result<void> Renderer::set_levels(MadeLevels made) {
   impl_->pieces.reset();  // shells are drawn in another order
   impl_->item_pieces.reset();
-  return impl_->layer.set_levels(std::move(made));
+  Impl& impl = *impl_;
+  if (impl.options.video_memory > 0 && !impl.layer.empty()) {
+    const std::size_t shells = impl.layer.table().shell_count();
+    impl.levels_shells = shells;
+    impl.levels_bytes = RowTexture::bytes_for(made.levels.triangles.size(), kFourIndices) +
+                        3 * sizeof(std::uint32_t) * std::min(impl.options.moving_triangles, 2 * shells);
+    if (Result<void> kept = impl.keep_to(impl.needs()); !kept) return kept;
+    if (impl.plan.given_up.levels) return {};
+  }
+  return impl.layer.set_levels(std::move(made));
 }
 
 bool Renderer::levels_are_current() const {
-  return impl_->layer.empty() || (impl_->layer.shell_draws().has_levels() && !impl_->layer.shell_draws().is_out_of_date());
+  return impl_->layer.empty() || impl_->plan.given_up.levels ||
+         (impl_->layer.shell_draws().has_levels() && !impl_->layer.shell_draws().is_out_of_date());
 }
 
 Result<void> Renderer::set_other(std::shared_ptr<const ModelSource> model) {
   ++impl_->scene_version;
+  if (model && impl_->options.video_memory > 0)
+    if (Result<void> kept = impl_->keep_to(impl_->needs_with(*model, impl_->other_layer)); !kept) return kept;
   Result<void> done = impl_->other_layer.set_model(model);
   impl_->other = done ? std::move(model) : nullptr;
   return done;
@@ -195,6 +308,11 @@ Result<void> Renderer::set_field(Pane pane, std::span<const float> values, bool 
   ++impl_->scene_version;
   FieldColours& field = impl_->fields[static_cast<std::size_t>(pane)];
   field.clear();
+  if (!values.empty() && impl_->options.video_memory > 0) {
+    MemoryNeeds wanted = impl_->needs();
+    wanted.fixed_bytes += std::max(FieldColours::bytes_for(values.size()), field.bytes_held()) - field.bytes_held();
+    if (Result<void> kept = impl_->keep_to(wanted); !kept) return kept;
+  }
   return values.empty() ? Result<void>() : field.set(values, on_nodes);
 }
 
@@ -255,17 +373,19 @@ void Renderer::end_preview() {
 
 Result<DrawReport> Renderer::draw(const Picture& picture, unsigned framebuffer, int width, int height) {
   impl_->compose_for(picture, width, height);
+  if (Result<void> kept = impl_->keep_to_limit(picture, width, height); !kept) return fail(kept.error());
   DrawnScene wanted{picture, impl_->composition.images, width, height, impl_->scene_version};
   wanted.picture.overlay = nullptr;
   // A moving picture is drawn coarsely only if the fine images don't show its scene already.
-  const bool fine = !(picture.moving || picture.waiting) || (impl_->fine.kept && impl_->fine.kept->same_scene(wanted));
+  const bool fine = !(picture.moving || picture.waiting) || impl_->is_kept_at_rest(wanted);
+  wanted.coarse = !fine;
   const bool waits = !fine && picture.waiting && impl_->can_wait_with(wanted);
-  Impl::Images& images = waits ? *impl_->last : fine ? impl_->fine : impl_->coarse;
-  if (!waits && (!images.kept || !images.kept->same_scene(wanted))) {
-    if (fine || !impl_->pieces || !impl_->pieces->scene.same_scene(wanted)) impl_->pieces.reset();
+  Impl::Images& images = waits ? *impl_->last : fine ? impl_->fine : impl_->moving_images();
+  if (!waits && (!images.kept || images.kept->coarse != wanted.coarse || !images.kept->same_scene(wanted))) {
+    if (&images == &impl_->fine || !impl_->pieces || !impl_->pieces->scene.same_scene(wanted)) impl_->pieces.reset();
     Picture scene = wanted.picture;
     scene.moving = !fine;
-    if (Result<void> drawn = impl_->draw_scene(images, scene, width, height, fine ? impl_->options.samples : 1); !drawn)
+    if (Result<void> drawn = impl_->draw_scene(images, scene, width, height, fine ? impl_->samples_at_rest() : 1); !drawn)
       return fail(drawn.error());
     images.kept = std::move(wanted);
   }
@@ -286,6 +406,7 @@ Result<DrawReport> Renderer::draw(const Picture& picture, unsigned framebuffer, 
     report.glyphs = glyphs->model.count + glyphs->preview.count;
     report.glyphs_left_out = glyphs->left_out;
   }
+  report.memory = video_memory();
   return report;
 }
 
@@ -335,9 +456,10 @@ bool Renderer::Impl::can_wait_with(const DrawnScene& wanted) const {
 Result<bool> Renderer::draw_piece(const Picture& picture, int width, int height, Clock& clock, std::int64_t budget_ns) {
   Impl& impl = *impl_;
   impl.compose_for(picture, width, height);
+  if (Result<void> kept = impl.keep_to_limit(picture, width, height); !kept) return fail(kept.error());
   DrawnScene wanted{picture, impl.composition.images, width, height, impl.scene_version};
   wanted.picture.overlay = nullptr;
-  if (impl.fine.kept && impl.fine.kept->same_scene(wanted)) return true;
+  if (impl.is_kept_at_rest(wanted)) return true;
   if (!impl.pieces || !impl.pieces->scene.same_scene(wanted)) impl.pieces.emplace().scene = std::move(wanted);
   const ComposedImage& first = impl.composition.images.front();
   if (impl.fine.eyes.width() != first.width || impl.fine.eyes.height() != first.height) impl.fine.kept.reset();
@@ -359,7 +481,7 @@ Result<bool> Renderer::draw_piece(const Picture& picture, int width, int height,
 Result<bool> Renderer::Impl::draw_next(Pieces& next, Clock& clock, std::int64_t budget_ns) {
   const std::int64_t start = clock.now_ns();
   const Picture& picture = next.scene.picture;
-  if (Result<void> prepared = prepare(fine, picture, options.samples); !prepared) return fail(prepared.error());
+  if (Result<void> prepared = prepare(fine, picture, samples_at_rest()); !prepared) return fail(prepared.error());
   ++next.count;
   std::int64_t now = start, took = 0;
   do {

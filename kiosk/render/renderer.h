@@ -12,6 +12,7 @@
 #include "ipc/model/preview.h"
 #include "kiosk/render/contact_picture.h"
 #include "kiosk/render/cut_picture.h"
+#include "kiosk/render/memory_plan.h"
 #include "kiosk/render/mesh_change.h"
 #include "kiosk/render/model_source.h"
 #include "kiosk/render/part_paint.h"
@@ -25,12 +26,15 @@ struct RendererOptions {
   std::size_t glyph_cap = 20000;  ///< max number of quality glyphs drawn, failures first
   /// Of a moving picture's image, at most so many where levels of detail allow it; 0: by whether a graphics card draws.
   std::size_t moving_triangles = 0;
+  /// Bytes that may be held on the graphics card, without the target of the pictures and without panels; 0: no limit. See memory_plan.h.
+  std::size_t video_memory = 0;
 };
 
 /// Number of glyphs drawn and left out, for a message beside the picture.
 struct DrawReport {
   std::size_t glyphs = 0;
   std::size_t glyphs_left_out = 0;
+  VideoMemory memory;
 };
 
 class Renderer {
@@ -47,7 +51,8 @@ class Renderer {
   /// Takes over levels of detail: moving pictures show coarse triangles for shells that are small in them. Ignored unless they were made of
   /// the shells that are shown; dropped when the shells are others. Errors: no graphics memory.
   Result<void> set_levels(MadeLevels made);
-  /// Whether moving pictures have levels of detail, of the places where the nodes are now.
+  /// Whether moving pictures have levels of detail, of the places where the nodes are now; or the limit of video memory has no room for
+  /// them.
   bool levels_are_current() const;
   const ModelSource* model() const;
   const std::shared_ptr<const ModelSource>& shared_model() const;
@@ -120,6 +125,7 @@ class Renderer {
     double moving_pixels = 0;          ///< how far they may be off
   };
   Figures figures() const;
+  VideoMemory video_memory() const;
 
  private:
   struct Impl;

@@ -6,7 +6,7 @@
 namespace prismesh::kiosk::render {
 
 Result<bool> RowTexture::reserve(std::size_t elements, const char* what) {
-  const std::size_t rows = std::max<std::size_t>(1, (elements + kWidth - 1) / kWidth);
+  const std::size_t rows = bytes_for(elements, format_) / (kWidth * format_.bytes);
   if (texture_ && rows <= rows_) return false;
   GLint max_size = 0;
   glGetIntegerv(GL_MAX_TEXTURE_SIZE, &max_size);
@@ -16,6 +16,7 @@ Result<bool> RowTexture::reserve(std::size_t elements, const char* what) {
                               std::to_string(static_cast<std::size_t>(max_size) * kWidth));
   while (glGetError() != GL_NO_ERROR) {
   }
+  rows_ = 0;
   texture_ = gl::Texture::make();
   glBindTexture(GL_TEXTURE_2D, texture_.get());
   glTexStorage2D(GL_TEXTURE_2D, 1, format_.internal, static_cast<GLsizei>(kWidth), static_cast<GLsizei>(wanted));

@@ -1,6 +1,7 @@
 // Holds an array of the model as a texture with one row for each chunk, so that a changed chunk is one upload.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <span>
 
@@ -38,6 +39,11 @@ class RowTexture {
   void bind(unsigned unit) const;
   /// Over the texture's life.
   std::size_t bytes_uploaded() const { return bytes_uploaded_; }
+  std::size_t bytes_held() const { return rows_ * kWidth * format_.bytes; }
+  /// Bytes that a new texture for so many elements holds.
+  static std::size_t bytes_for(std::size_t elements, const TexelFormat& format) {
+    return std::max<std::size_t>(1, (elements + kWidth - 1) / kWidth) * kWidth * format.bytes;
+  }
 
  private:
   TexelFormat format_;

@@ -43,6 +43,10 @@ class ScenePass {
   /// Draws shell index + 1 into a bound R32UI framebuffer; 0: no shell. Transparent parts aren't drawn. Clears it if the span begins there.
   void draw_items(const ModelLayer& model, const PaintTexture& paint, const Eigen::Matrix4d& clip_from_deck, DrawSpan& span) const;
 
+  std::size_t bytes_held() const { return nodes_.bytes_held() + handle_.bytes_held() + shadows_.bytes_held(); }
+
+  std::size_t shadow_bytes() const { return shadows_.bytes_held(); }
+
  private:
   struct LineStyle {
     float half_width = 1;  ///< display pixels

@@ -25,6 +25,14 @@ Sides sides_of(const ShadowPlane& plane, const mesh::Vec3& origin) {
 
 ShadowPass::ShadowPass(const Shaders& shaders) : shaders_(shaders), no_attributes_(gl::VertexArray::make()) {}
 
+std::size_t ShadowPass::bytes_held() const {
+  std::size_t bytes = 0;
+  for (const Cast& cast : casts_) bytes += cast.mask ? std::size_t{kMaskSize} * kMaskSize : 0;
+  return bytes;
+}
+
+std::size_t ShadowPass::max_bytes() { return std::size_t{3} * kMaskSize * kMaskSize; }
+
 Result<void> ShadowPass::cast(ModelLayer& model, const stereo::View& view) {
   count_ = 0;
   if (model.empty()) return {};

@@ -19,6 +19,9 @@ class ShadowPass {
   /// Draws the planes with their shadows into the bound framebuffer, after the shells. Leaves blending and the depth mask on.
   void draw(const ModelLayer& model, const Frame& frame) const;
 
+  std::size_t bytes_held() const;
+  static std::size_t max_bytes();
+
  private:
   struct Cast {
     ShadowPlane plane;

@@ -19,6 +19,7 @@ namespace {
 /// Two triangles of a quad. The last corner of each is 0: its values are those of the whole triangle.
 constexpr std::array<std::uint32_t, 6> kCorners{1, 2, 0, 2, 3, 0};
 constexpr std::size_t kShellsOfRun = 64;
+constexpr std::size_t kShellsOfPiece = 65'536;  ///< of an order that isn't held: 1.5 MB
 /// Of selected shells that a moving picture shows as they are; where more are selected, coarse triangles have their colour.
 constexpr std::size_t kMaxHeld = 20'000;
 constexpr double kFinest = 1, kCoarsest = 8, kCoarser = 1.35;  ///< pixels
@@ -85,9 +86,7 @@ Result<void> ShellDraws::update(const ModelTable& table, const ModelTextures& te
                 (changes.topology && made_->shell_versions != shell_versions_of(table.source()))))
     drop_levels();
   if (!made_ && (ordered_ != table.shell_count() || changes.topology)) {
-    std::vector<ShellIndex> order(table.shell_count());
-    for (std::size_t s = 0; s < order.size(); ++s) order[s] = ShellIndex(s);
-    if (Result<void> done = upload_order(order); !done) return done;
+    if (Result<void> done = set_order(table.shell_count()); !done) return done;
   }
   std::vector<std::uint64_t> marks;
   for (std::size_t c = 0; c < table.source().chunk_count(SnapshotArray::shell_marks); ++c)
@@ -125,7 +124,7 @@ Result<void> ShellDraws::set_levels(MadeLevels made, const ModelTable& table) {
   coarse_.upload(std::as_bytes(std::span(triangles)));  // three nodes and the shell
   made.levels.triangles = {};
   made_ = std::move(made);
-  if (Result<void> done = upload_order(made_->levels.shells); !done) return done;
+  if (Result<void> done = set_order(made_->levels.shells.size()); !done) return done;
   runs_.clear();
   for (std::size_t c = 0; c < made_->levels.shell_clusters; ++c)
     runs_.push_back({made_->levels.clusters[c].first, made_->levels.clusters[c].count, {}, true});
@@ -137,19 +136,51 @@ Result<void> ShellDraws::set_levels(MadeLevels made, const ModelTable& table) {
   return {};
 }
 
-Result<void> ShellDraws::upload_order(const std::vector<ShellIndex>& shells) {
+Result<void> ShellDraws::give_up_levels(const ModelTable& table) {
+  if (!made_) return {};
+  drop_levels();
+  coarse_ = RowTexture(kFourIndices);
+  upload(shell_array_, {}, GL_STREAM_DRAW);
+  upload(coarse_array_, {}, GL_STREAM_DRAW);
+  shell_list_ = coarse_list_ = {};
+  if (Result<void> done = set_order(table.shell_count()); !done) return done;
+  look_at_runs(table, std::vector<std::uint8_t>(table.node_count() / mesh::kChunkSize + 1, 1));
+  return {};
+}
+
+std::size_t ShellDraws::levels_bytes() const {
+  return coarse_.bytes_held() + gl::bytes_held(shell_indices_) + gl::bytes_held(coarse_indices_);
+}
+
+Result<void> ShellDraws::set_order_in_pieces(bool in_pieces) {
+  if (in_pieces == order_in_pieces_) return {};
+  order_in_pieces_ = in_pieces;
+  return upload_order();
+}
+
+/// Uploads the order, or frees what it takes.
+Result<void> ShellDraws::upload_order() const {
   std::vector<std::uint32_t> indices;
-  indices.reserve(shells.size() * kCorners.size());
-  for (const ShellIndex shell : shells) append_shell(shell.value, indices);
+  if (!order_in_pieces_) {
+    indices.reserve(ordered_ * kCorners.size());
+    for (std::size_t i = 0; i < ordered_; ++i) append_shell(shell_at(i), indices);
+  }
   while (glGetError() != GL_NO_ERROR) {
   }
   upload(all_array_, indices, GL_STATIC_DRAW);
-  if (glGetError() == GL_OUT_OF_MEMORY) return fail("graphics", "no memory for " + std::to_string(shells.size()) + " shells");
-  ordered_ = shells.size();
+  if (glGetError() == GL_OUT_OF_MEMORY) return fail("graphics", "no memory for " + std::to_string(ordered_) + " shells");
+  return {};
+}
+
+Result<void> ShellDraws::set_order(std::size_t shells) {
+  ordered_ = shells;
+  if (Result<void> done = upload_order(); !done) {
+    ordered_ = 0;
+    return done;
+  }
   runs_.clear();
-  for (std::size_t first = 0; first < shells.size(); first += kShellsOfRun)
-    runs_.push_back(
-        {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(std::min(kShellsOfRun, shells.size() - first)), {}, true});
+  for (std::size_t first = 0; first < shells; first += kShellsOfRun)
+    runs_.push_back({static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(std::min(kShellsOfRun, shells - first)), {}, true});
   return {};
 }
 
@@ -179,12 +210,11 @@ void ShellDraws::look_at_runs(const ModelTable& table, const std::vector<std::ui
 
 void ShellDraws::look_at_run(const ModelTable& table, std::size_t index, const std::vector<std::uint8_t>& changed_chunks) {
   Run& run = runs_[index];
-  const auto shell_of = [&](std::uint32_t i) -> std::size_t { return made_ ? made_->levels.shells[i].value : i; };
   bool changed = false;
   float moved = 0;
   mesh::ShellNodes nodes;
   for (std::uint32_t i = run.first; i < run.first + run.count; ++i) {
-    if (!table.shell(shell_of(i), nodes)) continue;
+    if (!table.shell(shell_at(i), nodes)) continue;
     for (const mesh::NodeIndex node : nodes.node) {
       changed = changed || changed_chunks[node.value / mesh::kChunkSize] != 0;
       if (!moved_by_.empty()) moved = std::max(moved, moved_by_[node.value]);
@@ -195,7 +225,7 @@ void ShellDraws::look_at_run(const ModelTable& table, std::size_t index, const s
   stereo::Box box;
   run.shown = false;
   for (std::uint32_t i = run.first; i < run.first + run.count; ++i) {
-    if (!table.shell(shell_of(i), nodes) || !table.shell_visible(shell_of(i))) continue;
+    if (!table.shell(shell_at(i), nodes) || !table.shell_visible(shell_at(i))) continue;
     run.shown = true;
     for (const mesh::NodeIndex node : nodes.node)
       if (const mesh::Vec3 at = table.position(node.value); finite(at)) box.add(mesh::Vec3(at - origin_));
@@ -235,9 +265,13 @@ void ShellDraws::draw_all(const Eigen::Matrix4d& clip_from_model, DrawSpan& span
   glBindVertexArray(all_array_.get());
   const ViewVolume volume(clip_from_model);
   std::size_t first = 0, last = 0;  // neighbours are drawn in one call
+  std::vector<std::uint32_t> piece;
   const auto flush = [&] {
     const DrawSpan::Part now = span.take(last - first);
-    if (now.count > 0)
+    if (now.count == 0) return;
+    if (order_in_pieces_)
+      add_to_piece(first + now.first, now.count, piece);
+    else
       glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(now.count * kCorners.size()), GL_UNSIGNED_INT,
                      reinterpret_cast<const void*>((first + now.first) * kCorners.size() * sizeof(std::uint32_t)));
   };
@@ -250,7 +284,23 @@ void ShellDraws::draw_all(const Eigen::Matrix4d& clip_from_model, DrawSpan& span
     last = run.first + run.count;
   }
   flush();
+  draw_piece(piece);
   glBindVertexArray(0);
+}
+
+/// Appends shells of the order to a piece, and draws it each time it is full.
+void ShellDraws::add_to_piece(std::size_t first, std::size_t count, std::vector<std::uint32_t>& piece) const {
+  for (std::size_t i = first; i < first + count; ++i) {
+    append_shell(shell_at(i), piece);
+    if (piece.size() >= kShellsOfPiece * kCorners.size()) draw_piece(piece);
+  }
+}
+
+void ShellDraws::draw_piece(std::vector<std::uint32_t>& piece) const {
+  if (piece.empty()) return;
+  glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(piece.size() * sizeof(std::uint32_t)), piece.data(), GL_STREAM_DRAW);
+  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(piece.size()), GL_UNSIGNED_INT, nullptr);
+  piece.clear();
 }
 
 void ShellDraws::choose(const mesh::lod::Viewpoint& from, const Eigen::Matrix4d& clip_from_model, std::size_t triangles) {

@@ -33,6 +33,16 @@ class ShellDraws {
   /// Takes levels over; ignored if they were made of other shells. Errors: no graphics memory.
   Result<void> set_levels(MadeLevels made, const ModelTable& table);
   bool has_levels() const { return made_.has_value(); }
+  /// Gives levels up, to take less memory. Errors: no graphics memory.
+  Result<void> give_up_levels(const ModelTable& table);
+  /// Whether the order in which shells are drawn is uploaded in pieces while they are drawn, instead of held. The same is drawn. Errors: no
+  /// graphics memory.
+  Result<void> set_order_in_pieces(bool in_pieces);
+  /// Bytes on the graphics card: of the order, and of levels with what is chosen.
+  std::size_t order_bytes() const { return gl::bytes_held(all_indices_); }
+  std::size_t levels_bytes() const;
+  /// Bytes of an order that is held.
+  static std::size_t order_bytes_of(std::size_t shells) { return shells * 6 * sizeof(std::uint32_t); }
   /// Whether nodes have moved since the levels were made.
   bool is_out_of_date() const { return !moved_by_.empty(); }
 
@@ -57,7 +67,12 @@ class ShellDraws {
     mesh::lod::Sphere bounds;            ///< model's coordinates (relative to the origin)
     bool shown = true;
   };
-  Result<void> upload_order(const std::vector<mesh::ShellIndex>& shells);
+  /// That of the levels, or else of the shells.
+  std::uint32_t shell_at(std::size_t place) const { return made_ ? made_->levels.shells[place].value : static_cast<std::uint32_t>(place); }
+  Result<void> set_order(std::size_t shells);
+  Result<void> upload_order() const;
+  void add_to_piece(std::size_t first, std::size_t count, std::vector<std::uint32_t>& piece) const;
+  void draw_piece(std::vector<std::uint32_t>& piece) const;
   void find_moved(const ModelTable& table, std::size_t chunk);
   void look_at_runs(const ModelTable& table, const std::vector<std::uint8_t>& changed_chunks);
   void look_at_run(const ModelTable& table, std::size_t run, const std::vector<std::uint8_t>& changed_chunks);
@@ -68,7 +83,8 @@ class ShellDraws {
   std::size_t shells_ = 0;
   gl::VertexArray all_array_, shell_array_, coarse_array_;
   gl::Buffer all_indices_, shell_indices_, coarse_indices_;
-  std::size_t ordered_ = 0;         ///< shells in all_indices_
+  std::size_t ordered_ = 0;         ///< shells in the order
+  bool order_in_pieces_ = false;    ///< all_indices_ has only the last piece
   std::vector<Run> runs_;           ///< with levels: their clusters of shells
   std::optional<MadeLevels> made_;  ///< without triangles: they are in coarse_
   RowTexture coarse_{kFourIndices};

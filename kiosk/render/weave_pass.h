@@ -16,6 +16,11 @@ class WeavePass {
   /// Draws into a framebuffer of width x height pixels (0: the window's). Errors: the graphics driver refuses the shader.
   Result<void> draw(const Composition& composition, const EyeImages& images, unsigned framebuffer, int width, int height);
 
+  std::size_t bytes_held() const { return bytes_of_phases(columns_, rows_); }
+  static std::size_t bytes_of_phases(int columns, int rows) {
+    return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows) * 8;
+  }
+
  private:
   /// Selects the program. There is one for each variant, as software renderers execute every branch of a shader.
   struct Variant {

@@ -112,12 +112,13 @@ struct ToolContext {
   PointedAt pointed{};
   HandPlace hand{};
   OpenPanels open{};
-  std::size_t glyphs_left_out = 0;  ///< glyphs that the last picture had no room for
-  std::uint64_t changes = 0;        ///< counts up with each change of the picture or the panels
-  bool keeps_apart = false;         ///< edits make no new contact
-  bool quits = false;               ///< the window closes
-  bool anew = false;                ///< and everything is made anew in it
-  bool follow_soon = false;         ///< follow at the next turn, even if the server says nothing
+  std::size_t glyphs_left_out = 0;     ///< glyphs that the last picture had no room for
+  render::VideoMemory video_memory{};  ///< as of the last picture
+  std::uint64_t changes = 0;           ///< counts up with each change of the picture or the panels
+  bool keeps_apart = false;            ///< edits make no new contact
+  bool quits = false;                  ///< the window closes
+  bool anew = false;                   ///< and everything is made anew in it
+  bool follow_soon = false;            ///< follow at the next turn, even if the server says nothing
 };
 
 }  // namespace prismesh::kiosk::toolkit

@@ -178,6 +178,32 @@ void at_rest(benchmark::State& state) {
   state.counters["pieces"] = static_cast<double>(stage.renderer->figures().pieces_drawn);
   state.SetLabel(reinterpret_cast<const char*>(glGetString(GL_RENDERER)));
 }
+/// Shells of 0.9, each a part of its own, in a grid of 1. Argument: 0 turning as they are, 1 turning with levels of detail, 2 at rest.
+void many_parts(benchmark::State& state) {
+  constexpr std::uint32_t kSide = 317;
+  const auto source = std::make_shared<test::TestSource>();
+  for (std::uint32_t part = 0; part < kSide * kSide; ++part) {
+    const mesh::Vec3 at(part % kSide, part / kSide, 0);
+    const std::uint32_t first = source->add_node(at);
+    for (const mesh::Vec3& to : {mesh::Vec3(0.9, 0, 0), mesh::Vec3(0.9, 0.9, 0), mesh::Vec3(0, 0.9, 0)}) source->add_node(at + to);
+    source->add_shell(first, first + 1, first + 2, first + 3, part);
+  }
+  Stage stage(0, "side-by-side", 1);
+  (void)stage.renderer->set_model(source);
+  stage.picture.view.bounds = stereo::sphere_around(stage.renderer->bounds());
+  stage.picture.view = stage.renderer->fitted(stage.picture.view, stereo::screen_size_mm(stage.picture.profile, kWidth, kHeight));
+  if (state.range(0) > 0) (void)stage.renderer->set_levels(render::make_levels(*source).value());
+  stage.picture.moving = state.range(0) < 2;
+  for (auto _ : state) {
+    stage.picture.view = stereo::orbit(stage.picture.view, 0.01, 0);
+    benchmark::DoNotOptimize(stage.renderer->draw(stage.picture, stage.target.framebuffer(), kWidth, kHeight));
+    glFinish();
+  }
+  state.counters["triangles"] = static_cast<double>(stage.renderer->figures().moving_triangles);
+  state.counters["off_by"] = stage.renderer->figures().moving_pixels;
+}
+BENCHMARK(many_parts)->ArgName("how")->DenseRange(0, 2)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+
 BENCHMARK(at_rest)->ArgName("budget_ms")->Arg(0)->Arg(50)->Arg(25)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 
 std::size_t resident_bytes() {

@@ -1,4 +1,7 @@
 // The panels about the view, driven as a hand drives them: by what is on the screen.
+#include <cstdio>
+#include <fstream>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -69,6 +72,26 @@ TEST_F(FrameTest, the_model_fills_what_the_panels_leave_in_mono_and_stereo) {
     expect_in_the_middle_of_the_view();
     station_->show_people(profile);
   }
+}
+
+TEST_F(FrameTest, a_limit_of_video_memory_is_kept_to_and_said) {
+  const std::filesystem::path settings = station_->folder() / "kiosk.toml";
+  std::ofstream(settings) << "[display]\nprofile = \"mono\"\nvideo_memory_mb = 40\n";
+  station_->start_kiosk({"--config", settings.string()});
+  station_->settled_aim();
+  const std::string said = station_->kiosk().last("notice warning Video memory ");
+  EXPECT_THAT(said, HasSubstr("is limited to 40 MB (video_memory_mb). To keep to it, edges aren't smoothed"));
+  EXPECT_THAT(said, testing::Not(HasSubstr("exceeded")));
+  int told = 0;
+  for (const std::string& line : lines_of(station_->kiosk().all_output())) {
+    int held = 0, limit = 0;
+    if (std::sscanf(line.c_str(), "video memory %d of %d MB", &held, &limit) != 2) continue;
+    ++told;
+    EXPECT_EQ(limit, 40);
+    EXPECT_LE(held, limit) << line;
+    EXPECT_GT(held, 10) << line;
+  }
+  EXPECT_GT(told, 0);
 }
 
 TEST_F(FrameTest, the_rail_takes_tools_in_hand_and_the_status_line_says_which) {

@@ -36,12 +36,13 @@ std::string all_of(const StationSettings& settings) {
   std::ostringstream text;
   text << settings.display.profile << '|' << settings.display.latency_ms << '|' << int(settings.display.screen)
        << settings.display.connector << '|' << settings.display.mode.width << ' ' << settings.display.mode.height << ' '
-       << settings.display.mode.refresh_hz << '|' << settings.display.console_switching << '|' << int(t.driver) << '|' << t.simulated << '|'
-       << t.port << '|' << t.baud << '|' << int(t.dialect) << '|' << t.polled << '|' << t.udp_port << '|' << t.latency_ms << '|'
-       << t.noise_mm << '|' << t.offset_mm.x() << ' ' << t.offset_mm.y() << ' ' << t.offset_mm.z() << '|' << t.eye_separation_mm << '|'
-       << t.motion << '|' << int(s.driver) << '|' << s.simulated << '|' << s.port << '|' << s.baud << '|' << s.id << '|'
-       << s.travel_mm_per_turn << '|' << s.reversed << '|' << s.zero_ticks << '|' << s.travel_mm << '|' << s.speed_mm_s << '|' << s.lag_ms
-       << '|' << settings.hand.mouse << '|' << settings.document.history_mb << '|' << settings.document.hang_s;
+       << settings.display.mode.refresh_hz << '|' << settings.display.console_switching << '|' << settings.display.video_memory_mb << '|'
+       << int(t.driver) << '|' << t.simulated << '|' << t.port << '|' << t.baud << '|' << int(t.dialect) << '|' << t.polled << '|'
+       << t.udp_port << '|' << t.latency_ms << '|' << t.noise_mm << '|' << t.offset_mm.x() << ' ' << t.offset_mm.y() << ' '
+       << t.offset_mm.z() << '|' << t.eye_separation_mm << '|' << t.motion << '|' << int(s.driver) << '|' << s.simulated << '|' << s.port
+       << '|' << s.baud << '|' << s.id << '|' << s.travel_mm_per_turn << '|' << s.reversed << '|' << s.zero_ticks << '|' << s.travel_mm
+       << '|' << s.speed_mm_s << '|' << s.lag_ms << '|' << settings.hand.mouse << '|' << settings.document.history_mb << '|'
+       << settings.document.hang_s;
   const HapticPenSettings& p = settings.haptic_pen;
   text << '|' << int(p.driver) << p.port << '|' << p.max_newton << '|' << p.stiffness_newton_m << '|' << p.friction << '|'
        << p.damping_newton_s_m << '|' << p.workspace_scale << '|' << p.left_handed << '|' << p.hand_script;
@@ -59,6 +60,7 @@ screen = "bare"
 connector = "DP-1"
 mode = "1920x1080@60"
 console_switching = true
+video_memory_mb = 256
 [hand]
 mouse = "middle-orbit"
 [document]
@@ -112,7 +114,7 @@ TEST(Settings, an_empty_file_keeps_every_default) { EXPECT_EQ(all_of(parsed(""))
 
 TEST(Settings, every_key_is_read) {
   EXPECT_EQ(all_of(parsed(kEveryKey)),
-            "anaglyph|6.5|2DP-1|1920 1080 60|1|1|1|/dev/serial/by-id/usb-tracker|9600|0|1|4243|12.5|0.5|1 210.5 -15|61|lean|"
+            "anaglyph|6.5|2DP-1|1920 1080 60|1|256|1|1|/dev/serial/by-id/usb-tracker|9600|0|1|4243|12.5|0.5|1 210.5 -15|61|lean|"
             "1|1|/dev/serial/by-id/usb-servo|57600|7|4|1|1000|1.5|6|20|middle-orbit|64|30|1/dev/pts/"
             "9|6|500|0.1|0.4|2.5|1|push.hand|::1|7443|2|20|4|1|48");
 }
@@ -199,6 +201,7 @@ TEST(Settings, refuses_numbers_beyond_their_limits) {
   };
   for (const Limits& one :
        std::vector<Limits>{{"display", "latency_ms", "-0.1", "0", "200", "200.1"},
+                           {"display", "video_memory_mb", "-1", "0", "1048576", "1048577"},
                            {"document", "history_mb", "15", "16", "1048576", "1048577"},
                            {"document", "hang_s", "-1", "0", "86400", "86401"},
                            {"eye_tracker", "baud", "299", "300", "4000000", "4000001"},
