@@ -82,7 +82,9 @@ class ElementWriting {
   Result<void> write_at_end(const AddedElement& added) {
     const Deck& deck = difference_.deck;
     const std::string_view text = deck.files[0].bytes.text();
-    const Result<std::string> header = difference_.writer.element_header(added.element_class);
+    const PartIndex part = difference_.model.elements[static_cast<std::size_t>(added.element_class)]->part[added.element];
+    const Result<std::string> header =
+        difference_.writer.element_header(added.element_class, part.valid() ? (*difference_.model.parts)[part.value] : Part());
     Result<WrittenCard> written =
         header ? difference_.writer.new_element(text, added.element_class, wanted_card(difference_.model, added, IdOffsets()))
                : fail(header.error());

@@ -55,10 +55,10 @@ Result<std::pair<Part, std::string>> CardWriter::weld_part(const Deck& deck, con
 }
 
 Result<std::pair<Part, std::string>> CardWriter::bond_part(const Deck& deck, const Model&, const BondPart&) const {
-  return fail("", "this version makes no bonds in " + std::string(name(deck.format)) + " decks, but in LS-DYNA decks");
+  return fail("", "this version makes no bonds in " + std::string(name(deck.format)) + " decks, but in LS-DYNA and Abaqus decks");
 }
 
-Result<std::string> CardWriter::element_header(ElementClass) const { return fail("", "has no example to be written like"); }
+Result<std::string> CardWriter::element_header(ElementClass, const Part&) const { return fail("", "has no example to be written like"); }
 
 Result<WrittenCard> CardWriter::new_element(std::string_view, ElementClass, const ElementCard&) const {
   return fail("", "has no example to be written like");
