@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Bonds in Abaqus decks, by a script that reads the decks' text alone, and by CalculiX, which runs them.
+"""Bonds and welds in Abaqus decks, by a script that reads the decks' text alone, and by CalculiX, which runs them.
 
     abaqus_joints_proof.py PRISMESH PRISMESH_MODELD
 
@@ -8,6 +8,8 @@
 2. The same edit in modeld: killed (SIGKILL) and recovered it saves the same bytes; undone, the deck's.
 3. CalculiX (ccx) pulls the sheets apart. Without the bond no force goes through. With it the force is that of a lap joint by Volkersen's
    shear lag, which this script works out: sheets that stretch, an adhesive that shears. Left out where ccx isn't installed.
+4. Welds along the flange, and more like the first: connectors with a node of their own on each sheet; the fastener names their set, and a
+   surface of both sheets. CalculiX has no fasteners; no solver has run these.
 """
 import json
 import math
@@ -135,6 +137,27 @@ def check_bond(before, after, count, turned, from_middle):
     print(f"  {count} hexahedra with {len(used)} nodes between two sheets; {len(added.splitlines())} lines added, the others as before")
 
 
+def check_welds(before, after, count):
+    added = added_lines(before, after)
+    nodes_before, nodes, welds, used = nodes_of(before), nodes_of(after), elements_of(after, "CONN3D2"), set()
+    assert len(welds) == count, f"{len(welds)} connectors instead of {count}"
+    for id, (_, ends) in welds.items():
+        assert len(set(ends)) == 2 and not set(ends) & (set(nodes_before) | used), f"weld {id} has a node that isn't its own"
+        used |= set(ends)
+        (x, y, z), (u, v, w) = (nodes[n] for n in ends)
+        assert abs(x - u) < 1e-6 and abs(y - v) < 1e-6 and sorted((round(z, 6), round(w, 6))) == [0, THICKNESS + GAP]
+    assert used == set(nodes) - set(nodes_before), "a new node belongs to no weld"
+    name, = {name for name, _ in welds.values()}
+    new = blocks("*BEFORE\n" + "\n".join(added))
+    assert [(given["ELSET"], data) for word, given, data in new if word == "CONNECTOR SECTION"] == [(name, [["BEAM"]])]
+    (fastener, data), = [(given, data) for word, given, data in new if word == "FASTENER"]
+    assert fastener["ELSET"] == name and fastener["INTERACTION NAME"]
+    assert float(one(new, "FASTENER PROPERTY", fastener["PROPERTY"])[1][0][0]) == 3, "half the diameter is the radius"
+    assert data[0] == [""] and len(data) == 2 and len(data[1]) == 1, "the normal is the direction of projection"
+    assert sorted(row[0] for row in one(new, "SURFACE", data[1][0])[1]) == ["SHEET1", "SHEET2"]
+    print(f"  {count} welds with {len(used)} nodes on two sheets; {len(added)} lines added, the others as before")
+
+
 def force_through(path):
     """The reaction at the pulled end, by CalculiX."""
     job = os.path.splitext(path)[0]
@@ -185,6 +208,18 @@ def main():
                 print(f"  CalculiX: {force:.1f} goes through the bond, by shear lag {wanted:.1f}; without it {apart:.1e}")
             if name == "flat":
                 prove_session(programs, os.path.join(folder, "session"), path, [edit], after)
+        path, out = os.path.join(folder, "flat", "deck.inp"), os.path.join(folder, "welded.inp")
+        edits = [{"edit": "weld", "flange": {"between": "1,2"}, "pitch": 15, "diameter": 6},
+                 {"edit": "weld", "points": [[15, 5, 0], [40, 14, 1]], "like": "spring:1"}]
+        script = os.path.join(folder, "welds.jsonl")
+        with open(script, "w") as file:
+            file.writelines(json.dumps(edit) + "\n" for edit in edits)
+        subprocess.run([programs[0], "edit", path, "--script", script, "-o", out], capture_output=True, check=True)
+        print("welds:")
+        check_welds(deck(), read(out), 6)
+        faults = subprocess.run([programs[0], "welds", out, "--json"], capture_output=True, text=True, check=True)
+        assert json.loads(faults.stdout) == {"welds": 6, "findings": []}, faults.stdout
+        prove_session(programs, os.path.join(folder, "welding"), path, edits, read(out))
         if not has_solver:
             print("ccx isn't installed: nobody ran the decks")
     finally:

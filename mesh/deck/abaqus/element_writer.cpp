@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "mesh/deck/abaqus/card_fields.h"
@@ -22,7 +23,9 @@ bool holds_such(std::string_view text, const Keyword& keyword, ElementClass elem
   if (keyword.name != "ELEMENT") return false;
   const Parameters given(text, keyword.begin, keyword.end);
   if (given.has("INPUT") || given.has("OFFSET")) return false;
-  const ElementType type = element_type(label(given.value("TYPE").value_or("")));
+  const std::string word = label(given.value("TYPE").value_or(""));
+  if (element_class == ElementClass::discrete) return word == "CONN3D2";
+  const ElementType type = element_type(word);
   return type.element_class == element_class && type.nodes == nodes;
 }
 
@@ -49,11 +52,38 @@ void search_elements(std::string_view text, std::size_t begin, std::size_t end, 
   }
 }
 
+/// The element sets that *FASTENER names, in capitals.
+std::set<std::string> fastened_sets(const Deck& deck) {
+  std::set<std::string> sets;
+  for (const auto& file : deck.files) {
+    Keywords keywords(file.bytes.text());
+    for (Keyword keyword; keywords.next(keyword);)
+      if (keyword.name == "FASTENER")
+        if (const auto elset = Parameters(file.bytes.text(), keyword.begin, keyword.end).value("ELSET")) sets.insert(label(*elset));
+  }
+  return sets;
+}
+
+/// Whether a *FASTENER names the set of the block of the element at `offset`, or a set that lists it.
+bool is_fastened(const Deck& deck, std::int64_t id, std::string_view text, std::size_t offset) {
+  const std::set<std::string> fastened = fastened_sets(deck);
+  for (const Reference& reference : deck.references->naming(referred(ElementClass::discrete), id))
+    if (const Referrer& card = deck.references->referrers()[reference.referrer];
+        card.keyword == "ELSET" && fastened.contains(label(card.title)))
+      return true;
+  std::string own;
+  Keywords keywords(text.substr(0, offset));
+  for (Keyword keyword; keywords.next(keyword);) own = label(Parameters(text, keyword.begin, keyword.end).value("ELSET").value_or(""));
+  return !own.empty() && fastened.contains(own);
+}
+
 }  // namespace
 
 Result<ElementPlace> find_element(const Deck& deck, ElementClass element_class, std::int64_t id, std::span<const std::int64_t> nodes) {
-  if (element_class != ElementClass::solid || nodes.size() != 8)
-    return fail("", "can't be an example: of the elements other than shells this version adds hexahedra with eight nodes to Abaqus decks");
+  if (!(element_class == ElementClass::solid && nodes.size() == 8) && !(element_class == ElementClass::discrete && nodes.size() == 2))
+    return fail("",
+                "can't be an example: of the elements other than shells this version adds hexahedra with eight nodes and connectors "
+                "(CONN3D2) to Abaqus decks");
   if (has_instances(deck)) return fail("", "can't be an example: the deck is made of parts and instances, to which this version adds none");
   for (const Reference& reference : deck.references->naming(referred(element_class), id))
     if (const Referrer& card = deck.references->referrers()[reference.referrer];
@@ -72,6 +102,8 @@ Result<ElementPlace> find_element(const Deck& deck, ElementClass element_class, 
     }
     if (begin) search_elements(text, *begin, text.size(), {id, nodes}, largest, found);
     if (!found) continue;
+    if (element_class == ElementClass::discrete && !is_fastened(deck, id, text, found->offset))
+      return fail("", "can't be an example: no *FASTENER names its element set, so that nothing would attach a new one to the sheets");
     found->file = file;
     found->last_in_file = largest;
     return *found;
@@ -108,8 +140,9 @@ std::string quoted_name(const std::string& name) {
 }
 
 Result<std::string> element_header(ElementClass element_class, const Part& part) {
-  if (element_class != ElementClass::solid || part.name.empty()) return fail("", "has no example to be written like");
-  return "*ELEMENT, TYPE=C3D8, ELSET=" + quoted_name(part.name);
+  if ((element_class != ElementClass::solid && element_class != ElementClass::discrete) || part.name.empty())
+    return fail("", "has no example to be written like");
+  return "*ELEMENT, TYPE=" + std::string(element_class == ElementClass::solid ? "C3D8" : "CONN3D2") + ", ELSET=" + quoted_name(part.name);
 }
 
 WrittenCard new_element(const ElementCard& element) {

@@ -11,8 +11,8 @@
 
 namespace prismesh::mesh::deck::abaqus {
 
-/// As CardWriter::find_element, of solids with eight nodes. Refused as well: decks of parts and instances, where numbers aren't unique, and
-/// an element that a surface names by its number.
+/// As CardWriter::find_element, of solids with eight nodes and of connectors (CONN3D2). Refused as well: decks of parts and instances,
+/// where numbers aren't unique; an element that a surface names by its number; a connector that no *FASTENER attaches.
 Result<ElementPlace> find_element(const Deck& deck, ElementClass element_class, std::int64_t id, std::span<const std::int64_t> nodes);
 
 /// As CardWriter::element_like.
@@ -21,7 +21,8 @@ Result<WrittenCard> element_like(std::string_view text, const ElementPlace& exam
 /// Before the first *STEP: all that isn't history stands above it.
 std::size_t end_of_model(std::string_view text);
 
-/// As CardWriter::element_header and new_element. Solids are C3D8, the hexahedron that Abaqus/Standard, Abaqus/Explicit and CalculiX have.
+/// As CardWriter::element_header and new_element. Solids are C3D8, the hexahedron that Abaqus/Standard, Abaqus/Explicit and CalculiX have;
+/// welds are CONN3D2.
 Result<std::string> element_header(ElementClass element_class, const Part& part);
 WrittenCard new_element(const ElementCard& element);
 

@@ -123,4 +123,24 @@ Result<std::pair<Part, std::string>> bond_part(const Deck& deck, const Model& mo
   return std::pair(std::move(*part), std::move(cards));
 }
 
+Result<std::pair<Part, std::string>> weld_part(const Deck& deck, const Model& model, const CardWriter::WeldPart& wanted) {
+  if (wanted.yield_stress) return fail("", "welds of an Abaqus deck are rigid connectors: \"yield_stress\" has no place in them");
+  Result<Part> part = next_part(deck, model, "SPOT-WELDS");
+  if (!part) return fail(part.error());
+  part->material.reset();
+  const std::string& name = part->name;
+  std::string surface = "*SURFACE, NAME=" + name + "-SHEETS, TYPE=ELEMENT\n";
+  for (const std::int64_t sheet : wanted.sheets) {
+    const Part& of_sheet = part_with(model, sheet);
+    if (of_sheet.name.empty())
+      return fail("", "part:" + std::to_string(sheet) + " has no element set that the fasteners' surface could name");
+    surface += quoted_name(of_sheet.name) + ", SPOS\n";
+  }
+  // Behind *ELEMENT, whose set these cards name. The first data line of *FASTENER is the direction of projection: by default the normal.
+  std::string cards = "*FASTENER PROPERTY, NAME=" + name + "\n" + number_words(wanted.diameter / 2) + "\n";
+  cards += "*CONNECTOR SECTION, ELSET=" + name + "\nBEAM\n" + surface;
+  cards += "*FASTENER, INTERACTION NAME=" + name + ", PROPERTY=" + name + ", ELSET=" + name + "\n,\n" + name + "-SHEETS\n";
+  return std::pair(std::move(*part), std::move(cards));
+}
+
 }  // namespace prismesh::mesh::deck::abaqus

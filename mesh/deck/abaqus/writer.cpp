@@ -296,6 +296,10 @@ class Writer : public CardWriter {
   Result<WrittenCard> new_element(std::string_view, ElementClass, const ElementCard& element) const override {
     return abaqus::new_element(element);
   }
+  ElementClass weld_class() const override { return ElementClass::discrete; }
+  Result<std::pair<Part, std::string>> weld_part(const Deck& deck, const Model& model, const WeldPart& wanted) const override {
+    return abaqus::weld_part(deck, model, wanted);
+  }
   Result<std::pair<Part, std::string>> bond_part(const Deck& deck, const Model& model, const BondPart& wanted) const override {
     return abaqus::bond_part(deck, model, wanted);
   }

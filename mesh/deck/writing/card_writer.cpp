@@ -51,7 +51,7 @@ Result<WrittenCard> CardWriter::element_like(std::string_view, const ElementPlac
 
 Result<std::pair<Part, std::string>> CardWriter::weld_part(const Deck& deck, const Model&, const WeldPart&) const {
   return fail("", "this version makes no part of welds in " + std::string(name(deck.format)) +
-                      " decks, but in LS-DYNA decks; in Radioss decks \"like\" copies an existing spring");
+                      " decks, but in LS-DYNA, Nastran and Abaqus decks; in Radioss decks \"like\" copies an existing spring");
 }
 
 Result<std::pair<Part, std::string>> CardWriter::bond_part(const Deck& deck, const Model&, const BondPart&) const {

@@ -113,9 +113,15 @@ class CardWriter {
   /// A new element's card in the format of the one at `example`, of the same part. Everything but its id and nodes is carried over.
   virtual Result<WrittenCard> element_like(std::string_view text, const ElementPlace& example, const ElementCard& element) const;
 
+  /// Whether the card of a weld names the parts of the sheets that it joins (ElementCard::sheets).
+  virtual bool names_sheets() const { return false; }
+  /// The class of the welds of weld_part.
+  virtual ElementClass weld_class() const { return ElementClass::beam; }
+
   /// Where cards without an example go: behind all others of the main file, before the line that ends it.
   virtual std::size_t end_of_cards(std::string_view text) const { return text.size(); }
-  /// The keyword line of such a block for elements of a class and a part, and a card in it. Errors: as shell_in_block.
+  /// The keyword line of such a block for elements of a class and a part (empty: cards need none), and a card in it. Errors: as
+  /// shell_in_block.
   virtual Result<std::string> element_header(ElementClass element_class, const Part& part) const;
   virtual Result<WrittenCard> new_element(std::string_view text, ElementClass element_class, const ElementCard& element) const;
 
