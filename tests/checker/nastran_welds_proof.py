@@ -6,7 +6,7 @@
 `prismesh edit` welds two sheets along their flange, as a new property and then like its first weld, in small fields, free fields and with CR LF.
 Every line of the deck is still there, in order; each CWELD names a grid point on either sheet, exactly on it, and the properties of these two
 sheets in the order of its ends; its PWELD names a MAT1; every number is new. The same edits in modeld: killed (SIGKILL) and recovered it saves
-the same bytes; undone, the deck's.
+the same bytes; undone, the deck's. With PRISMESH_MODELS also twelve welds on a real car: each end lies on a shell of the property that is named.
 """
 import json
 import os
@@ -15,6 +15,7 @@ import subprocess
 import sys
 import tempfile
 
+from bond_proof import distance_from_triangle
 from session_proof import added_lines, prove_session, read
 
 COLUMNS, ROWS, SIDE, DISTANCE = 20, 4, 5.0, 1.6
@@ -45,14 +46,14 @@ def deck(free, eol):
 def entries(text):
     """The fields of each entry of the bulk data, its continuations appended; the name first."""
     out, lines = [], text.splitlines()
-    for line in lines[lines.index("BEGIN BULK") + 1:]:
-        if line.startswith("$"):
+    for line in lines[next(k for k, line in enumerate(lines) if line.startswith("BEGIN BULK")) + 1:]:
+        if line.startswith("$") or not line.strip():
             continue
         if line.startswith("ENDDATA"):
             return out
         fields = line.split(",")[:9] if "," in line[:10] else [line[k:k + 8] for k in range(0, 72, 8)]
         fields = [f.strip() for f in fields] + [""] * (9 - len(fields))
-        if fields[0] in ("", "+"):
+        if fields[0] == "" or fields[0][0] in "+*":
             out[-1] += fields[1:]
         else:
             out.append(fields)
@@ -105,6 +106,32 @@ def check(before, after, welds):
     print(f"  {len(cards)} welds with {len(used)} grid points on two sheets; {len(added)} lines added, the others as before")
 
 
+def check_car(prismesh, deck, folder):
+    """Welds between two properties of a car whose flanges aren't planes; grid points are rounded to eight columns."""
+    out = os.path.join(folder, "car.nas")
+    edit = {"edit": "weld", "flange": {"between": "2,19", "gap": 5}, "pitch": 30, "diameter": 6, "gap": 5}
+    done = subprocess.run([prismesh, "edit", deck, "--edit", json.dumps(edit), "-o", out, "--json"], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr[-2000:]
+    count = json.loads(done.stdout)["welds_added"]
+    assert count >= 10, f"{count} welds"
+    with open(deck, errors="surrogateescape", newline="") as file:
+        before = file.read()
+    with open(out, errors="surrogateescape", newline="") as file:
+        after = file.read()
+    added_lines(before, after)
+    new = entries(after)
+    grids = {int(f[0]): tuple(real(x) for x in f[2:5]) for f in by_name(new, "GRID")}
+    welds = by_name(new, "CWELD")
+    assert len(welds) == count
+    for f in welds:
+        for end, sheet in ((int(f[4]), f[8]), (int(f[5]), f[9])):
+            near = min(distance_from_triangle(grids[end], *(grids[n] for n in triangle)) for name, corners in (("CQUAD4", 4), ("CTRIA3", 3))
+                       for shell in by_name(new, name) if shell[1] == sheet
+                       for triangle in [[int(n) for n in shell[2:5]], [int(shell[2]), int(shell[4]), int(shell[1 + corners])]][:corners - 2])
+            assert near < 0.01, f"an end of weld {f[0]} is {near} from the sheet that it names"
+    print(f"car: {count} welds, each end on the sheet that it names")
+
+
 def main():
     programs = sys.argv[1:3]
     folder = tempfile.mkdtemp(prefix="prismesh-nastran-")
@@ -134,6 +161,9 @@ def main():
             assert json.loads(faults.stdout) == {"welds": 7, "findings": []}, faults.stdout
             if name == "small":
                 prove_session(programs, os.path.join(folder, "session"), path, edits, after)
+        car = os.path.join(os.environ.get("PRISMESH_MODELS", ""), "simplecar_nas", "full_car.nas")
+        if os.path.exists(car):
+            check_car(programs[0], car, folder)
     finally:
         shutil.rmtree(folder, ignore_errors=True)
     return 0
