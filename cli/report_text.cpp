@@ -131,6 +131,7 @@ std::string change_words(const mesh::document::EditReport& report) {
   if (report.bonded) return counted(report.bonded->solids_added, "solid") + " added";
   std::string words;
   const auto add = [&](const std::string& more) { words += (words.empty() ? "" : ", ") + more; };
+  if (report.welds_mended) add(counted(report.welds_mended->mended, "weld") + " mended");
   if (report.nodes_moved > 0 || report.elements_added + report.elements_removed == 0) add(counted(report.nodes_moved, "node") + " moved");
   if (report.elements_added > 0) add(counted(report.elements_added, "element") + " added");
   if (report.elements_removed > 0) add(counted(report.elements_removed, "element") + " removed");

@@ -13,7 +13,8 @@ def read(path):
 
 
 def prove_session(programs, folder, deck, edits, after):
-    """`deck`: its path; `after`: the text that the command line saved. Killed (SIGKILL), the session saves the same; undone, the deck's."""
+    """`deck`: its path; `after`: the text that the command line saved. Killed (SIGKILL) the session saves the same, as does one that opens the deck
+    in a sandbox; undone it saves the deck's."""
     prismesh, modeld = programs
     before, suffix = read(deck), os.path.splitext(deck)[1]
     os.makedirs(folder)
@@ -40,7 +41,14 @@ def prove_session(programs, folder, deck, edits, after):
     daemon.session("save", undone)
     daemon.kill(signal.SIGTERM)
     assert read(undone) == before, "undone, another deck is saved"
-    print("  killed and recovered: the same bytes are saved; undone: the original's")
+    daemon = Modeld(modeld, prismesh, os.path.join(folder, "third"))
+    daemon.session("open", "--sandboxed", deck)
+    daemon.session("edit", "--script", script)
+    rewritten = os.path.join(folder, "rewritten" + suffix)
+    daemon.session("save", rewritten)
+    daemon.kill(signal.SIGTERM)
+    assert read(rewritten) == after, "rewritten in a sandbox, another deck is saved"
+    print("  killed and recovered: or rewritten in a sandbox: the same bytes are saved; undone: the original's")
 
 
 def added_lines(before, after):

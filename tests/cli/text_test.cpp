@@ -57,6 +57,8 @@ TEST(ChangeWords, say_what_was_made_instead_of_no_nodes_that_moved) {
   EXPECT_EQ(change_words(report), "2 elements added, 1 element removed");
   report.nodes_moved = 3;
   EXPECT_EQ(change_words(report), "3 nodes moved, 2 elements added, 1 element removed");
+  report.welds_mended.emplace().mended = 1;
+  EXPECT_EQ(change_words(report), "1 weld mended, 3 nodes moved, 2 elements added, 1 element removed");
   report.welded.emplace().welds_added = 6;
   EXPECT_EQ(change_words(report), "6 welds added");
 }
