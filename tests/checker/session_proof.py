@@ -48,7 +48,7 @@ def prove_session(programs, folder, deck, edits, after):
     daemon.session("save", rewritten)
     daemon.kill(signal.SIGTERM)
     assert read(rewritten) == after, "rewritten in a sandbox, another deck is saved"
-    print("  killed and recovered: or rewritten in a sandbox: the same bytes are saved; undone: the original's")
+    print("  killed and recovered, or rewritten in a sandbox: the same bytes are saved; undone: the original's")
 
 
 def added_lines(before, after):
