@@ -21,7 +21,7 @@ void print_text(std::ostream& out, const std::vector<document::ReplayStep>& step
     applied += step.applied;
     out << "line " << step.line << ": " << step.edit << (step.applied ? ": " : " not applied: ");
     if (step.applied)
-      out << counted(step.report.nodes_moved, "node") << " moved\n";
+      out << change_words(step.report) << '\n';
     else
       out << printable(step.message) << '\n';
   }

@@ -126,6 +126,18 @@ bool output_is_good(const Context& context) {
   return false;
 }
 
+std::string change_words(const mesh::document::EditReport& report) {
+  if (report.welded) return counted(report.welded->welds_added, "weld") + " added";
+  if (report.bonded) return counted(report.bonded->solids_added, "solid") + " added";
+  std::string words;
+  const auto add = [&](const std::string& more) { words += (words.empty() ? "" : ", ") + more; };
+  if (report.welds_mended) add(counted(report.welds_mended->mended, "weld") + " mended");
+  if (report.nodes_moved > 0 || report.elements_added + report.elements_removed == 0) add(counted(report.nodes_moved, "node") + " moved");
+  if (report.elements_added > 0) add(counted(report.elements_added, "element") + " added");
+  if (report.elements_removed > 0) add(counted(report.elements_removed, "element") + " removed");
+  return words;
+}
+
 void print_edit(std::ostream& out, const mesh::document::EditReport& report) {
   if (report.welded) {
     out << report.edit << ": " << counted(report.welded->welds_added, "weld") << " added, " << counted(report.elements_added, "element")
@@ -139,8 +151,8 @@ void print_edit(std::ostream& out, const mesh::document::EditReport& report) {
     for (const std::string& note : report.notes) out << "  " << printable(note) << '\n';
     return;
   }
-  out << report.edit << ": " << counted(report.nodes_moved, "node") << " moved; warn " << report.before.warn << " -> " << report.after.warn
-      << ", fail " << report.before.fail << " -> " << report.after.fail;
+  out << report.edit << ": " << change_words(report) << "; warn " << report.before.warn << " -> " << report.after.warn << ", fail "
+      << report.before.fail << " -> " << report.after.fail;
   if (report.clusters_before + report.clusters_after > 0)
     out << ", clusters of triangles " << report.clusters_before << " -> " << report.clusters_after;
   out << '\n';

@@ -29,6 +29,9 @@ std::string rounded(double value);
 /// The double that has a float's shortest digits: 8.07f as 8.07, not 8.06999969482422.
 double as_written(float value);
 
+/// What an edit made: "3 nodes moved", "2 elements added, 1 element removed", "6 welds added".
+std::string change_words(const mesh::document::EditReport& report);
+
 /// Prints what an edit did in a line, and its notes.
 void print_edit(std::ostream& out, const mesh::document::EditReport& report);
 

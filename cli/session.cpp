@@ -151,8 +151,10 @@ void print_state(std::ostream& out, const Context& context, const ipc::DocumentS
 }
 
 void print_saved(std::ostream& out, const Context& context, const ipc::Saved& saved) {
-  out << "saved " << printable(saved.path) << ": " << counted(saved.nodes_written, "node") << " written, "
-      << counted(saved.lines_changed, "line") << " changed\n";
+  out << "saved " << printable(saved.path) << ": ";
+  // Edits that only add or remove write no moved nodes.
+  if (saved.nodes_written > 0 || saved.lines_changed == 0) out << counted(saved.nodes_written, "node") << " written, ";
+  out << counted(saved.lines_changed, "line") << " changed\n";
   for (const std::string& note : saved.notes) say(context, Error{saved.path, 0, "note: " + note});
 }
 

@@ -174,6 +174,11 @@ class StripMaker {
 
 }  // namespace
 
+void turn_over(BondStrip& strip) {
+  for (std::array<std::uint32_t, 8>& solid : strip.solids)
+    solid = {solid[4], solid[7], solid[6], solid[5], solid[0], solid[3], solid[2], solid[1]};
+}
+
 double least_corner_volume(const std::array<Vec3, 8>& corners) {
   // Each corner with its neighbours in the order in which their edges are right-handed.
   constexpr std::size_t kEdges[8][3] = {{1, 3, 4}, {2, 0, 5}, {3, 1, 6}, {0, 2, 7}, {7, 5, 0}, {4, 6, 1}, {5, 7, 2}, {6, 4, 3}};

@@ -50,6 +50,9 @@ struct BondStrip {
 /// `tree`: of the model, with the shells of the flange's sheets only. Precondition: the flange has two sheets and a length.
 BondStrip lay_strip(const Model& model, const spatial::BoxTree& tree, const Flange& flange, const BondShape& shape);
 
+/// Turns the hexahedra over: those on the one sheet and those on the other change places, and each stays right-handed.
+void turn_over(BondStrip& strip);
+
 /// The least of the volumes that the three edges at each corner of a hexahedron span: above 0 if it is right-handed and not folded.
 double least_corner_volume(const std::array<Vec3, 8>& corners);
 

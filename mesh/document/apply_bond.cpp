@@ -10,6 +10,7 @@
 #include "base/counted.h"
 #include "base/readable_number.h"
 #include "mesh/connections/bond_strip.h"
+#include "mesh/connections/sheet_stacks.h"
 #include "mesh/deck/editing/new_ids.h"
 #include "mesh/deck/editing/text_changes.h"
 #include "mesh/deck/formats/formats.h"
@@ -49,8 +50,9 @@ struct BondKind {
 /// Errors: what the edit asks for isn't made in this version, contradicts itself, or a value is missing.
 Result<void> check_bond(const Document& document, const Bond& edit) {
   if (!document.deck->references || document.deck->files.empty()) return fail("", "bond: the document has no deck");
-  if (document.deck->format != deck::Format::ls_dyna)
-    return fail("", "bond: this version makes no bonds in " + std::string(name(document.deck->format)) + " decks, but in LS-DYNA decks");
+  if (document.deck->format != deck::Format::ls_dyna && document.deck->format != deck::Format::abaqus)
+    return fail(
+        "", "bond: this version makes no bonds in " + std::string(name(document.deck->format)) + " decks, but in LS-DYNA and Abaqus decks");
   if (edit.like) {
     if (edit.density || edit.youngs_modulus || edit.poissons_ratio)
       return fail("", "bond: \"like\" takes the material from the existing solid; its values can't be given too");
@@ -114,10 +116,66 @@ Result<BondKind> like_solid(const Document& document, const std::string& like) {
   return kind;
 }
 
-Result<BondKind> make_bond_part(const Document& document, const Bond& edit, const std::vector<PartIndex>& parts, Generation& next) {
+/// A side of a part's shells: that to which the normals point, or the other one.
+using SheetSide = deck::CardWriter::BondPart::SheetSide;
+
+/// The sides of the sheets that face the first four corners of the hexahedra, and those that face the other four; ascending.
+std::array<std::vector<SheetSide>, 2> facing_sides(const Model& model, const std::vector<BondStrip>& strips) {
+  std::array<std::vector<SheetSide>, 2> facing;
+  for (const BondStrip& strip : strips)
+    for (const std::array<std::uint32_t, 8>& solid : strip.solids)
+      for (std::size_t c = 0; c < solid.size(); ++c) {
+        const BondCorner &own = strip.corners[solid[c]], &other = strip.corners[solid[(c + 4) % 8]];
+        const Vec3 normal = connections::unit_normal(model, own.sheet.shell);
+        facing[c / 4].push_back(
+            {(*model.parts)[model.shell_parts[own.sheet.shell.value].value].id, normal.dot(other.sheet.point - own.sheet.point) > 0});
+      }
+  for (std::vector<SheetSide>& sides : facing) {
+    std::sort(sides.begin(), sides.end());
+    sides.erase(std::unique(sides.begin(), sides.end()), sides.end());
+  }
+  return facing;
+}
+
+/// The parts of the sheets that the faces of the existing solid lie on: of its first four corners, and of the other four.
+std::array<PartIndex, 2> parts_at_faces(const Model& model, const std::array<NodeIndex, 8>& corners) {
+  const spatial::BoxTree tree(model);
+  std::array<PartIndex, 2> parts;
+  for (std::size_t e = 0; e < 2; ++e) {
+    Vec3 middle = Vec3::Zero();
+    for (std::size_t c = 0; c < 4; ++c) middle += model.position(corners[c + 4 * e]) / 4;
+    if (const std::optional<spatial::SurfacePoint> nearest = tree.closest(middle)) parts[e] = model.shell_parts[nearest->shell.value];
+  }
+  return parts;
+}
+
+/// Where each face is tied by a surface of its own: turns strips over so that the first corners lie on the sheets that those of the
+/// existing solid lie on, without one on the part with the lower number. Says which strips the surfaces of the existing one may not hold.
+void agree_on_faces(const Model& model, const BondKind* kind, std::vector<BondStrip>& strips, EditReport& report) {
+  std::optional<std::array<PartIndex, 2>> wanted;
+  if (kind != nullptr) wanted = parts_at_faces(model, *kind->corners);
+  bool told = false;
+  for (BondStrip& strip : strips) {
+    std::array<PartIndex, 2> parts;
+    for (std::size_t e = 0; e < 2; ++e) parts[e] = model.shell_parts[strip.corners[strip.solids.front()[4 * e]].sheet.shell.value];
+    const std::array<PartIndex, 2> turned{parts[1], parts[0]};
+    const bool turns =
+        wanted ? parts != *wanted && (turned == *wanted || parts[0] == (*wanted)[1] || parts[1] == (*wanted)[0]) : parts[1] < parts[0];
+    if (turns) connections::turn_over(strip);
+    if (!wanted || (turns ? turned : parts) == *wanted || told) continue;
+    told = true;
+    report.notes.push_back("the existing solid joins " + sheet_part_words(model, (*wanted)[0]) + " and " +
+                           sheet_part_words(model, (*wanted)[1]) + ": bonds of " + sheet_part_words(model, parts[0]) + " and " +
+                           sheet_part_words(model, parts[1]) + " hold only if its surfaces have the sheets too");
+  }
+}
+
+Result<BondKind> make_bond_part(const Document& document, const Bond& edit, const std::vector<PartIndex>& parts,
+                                const std::vector<BondStrip>& strips, Generation& next) {
   Model& model = next.model;
   deck::CardWriter::BondPart wanted;
   for (const PartIndex part : parts) wanted.sheets.push_back((*model.parts)[part.value].id);
+  wanted.facing = facing_sides(model, strips);
   wanted.density = *edit.density;
   wanted.youngs_modulus = *edit.youngs_modulus;
   wanted.poissons_ratio = *edit.poissons_ratio;
@@ -195,7 +253,7 @@ class BondSearch {
     strips_.push_back(std::move(strip));
   }
 
-  const std::vector<BondStrip>& strips() const { return strips_; }
+  std::vector<BondStrip>& strips() { return strips_; }
   const std::string& first_reason() const { return first_; }
 
  private:
@@ -284,11 +342,12 @@ Result<void> apply_edit(const Document& document, const Bond& edit, Generation& 
   const Result<std::vector<PartIndex>> sheets = parts_bonded(before.model, search.strips());
   if (!sheets) return fail(sheets.error());
   if (const Result<void> open = refuse_locked(before, *sheets, "a bond", "bond"); !open) return open;
+  if (document.deck->format == deck::Format::abaqus) agree_on_faces(before.model, kind ? &*kind : nullptr, search.strips(), report);
   if (kind) {
     if (const Result<void> open = refuse_locked(before, {kind->part}, "elements", "bond"); !open) return open;
     note_untied(document, kind->part, *sheets, "bonds", report);
   } else {
-    Result<BondKind> made = make_bond_part(document, edit, *sheets, next);
+    Result<BondKind> made = make_bond_part(document, edit, *sheets, search.strips(), next);
     if (!made) return fail(made.error());
     kind = *made;
   }

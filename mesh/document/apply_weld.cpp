@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -11,7 +13,9 @@
 #include "base/readable_number.h"
 #include "mesh/connections/sheet_reach.h"
 #include "mesh/connections/weld_spots.h"
+#include "mesh/deck/editing/element_place.h"
 #include "mesh/deck/editing/new_ids.h"
+#include "mesh/deck/editing/parts_at_nodes.h"
 #include "mesh/deck/editing/text_changes.h"
 #include "mesh/deck/editing/tied_sets.h"
 #include "mesh/deck/formats/formats.h"
@@ -83,16 +87,22 @@ Result<WeldKind> like_existing(const Document& document, const std::string& like
   const std::span<const NodeIndex> nodes =
       std::span(block.nodes).subspan(block.first_node[*element], block.first_node[*element + 1] - block.first_node[*element]);
   const std::string words = std::string(name(named->element_class)) + " " + std::to_string(named->id);
-  if ((named->element_class != ElementClass::beam && named->element_class != ElementClass::discrete) || nodes.size() != 2)
+  const bool names_sheets = deck::card_writer(document.deck->format)->names_sheets();
+  if ((named->element_class != ElementClass::beam && named->element_class != ElementClass::discrete) ||
+      (nodes.size() != 2 && !names_sheets))
     return fail("", "weld: " + words + " can't be the example: this version makes welds of beams and springs with two nodes");
   if (!block.part[*element].valid()) return fail("", "weld: " + words + " can't be the example: it has no part");
   WeldKind kind;
   kind.element_class = named->element_class;
   kind.part = block.part[*element];
   kind.example = *element;
+  const bool is_added = model.topology_change && *element >= model.topology_change->deck_elements[c];
+  if (names_sheets) {  // the new nodes' cards follow those of the sheets, which tell what they lie on
+    if (is_added) kind.example = model.topology_change->element_examples[c][*element - model.topology_change->deck_elements[c]];
+    return kind;
+  }
   kind.ends = {nodes[0], nodes[1]};
   kind.joins_sets = true;
-  const bool is_added = model.topology_change && *element >= model.topology_change->deck_elements[c];
   if (is_added) {
     kind.example = model.topology_change->element_examples[c][*element - model.topology_change->deck_elements[c]];
     const PlacedNode* placed = placed_node(model, nodes[0]);
@@ -102,8 +112,23 @@ Result<WeldKind> like_existing(const Document& document, const std::string& like
   return kind;
 }
 
-/// The beam or spring nearest to the place whose nodes lie on sheets: "beam:9". Errors: there is none.
-Result<std::string> nearest_weld(const Generation& generation, const Vec3& place) {
+/// Errors: the card of the existing element can't be found, or no other can be like it.
+Result<void> can_be_example(const Document& document, const WeldKind& kind) {
+  if (kind.example == kNoExample) return {};
+  const std::unique_ptr<const deck::CardWriter> writer = deck::card_writer(document.deck->format);
+  const Result<deck::ElementPlace> place =
+      deck::place_of_element(*document.deck, document.opened->model, *writer, kind.element_class, kind.example);
+  if (!place) return fail(place.error());
+  deck::ElementCard card;
+  card.element_class = kind.element_class;
+  card.id = card.part = 1;
+  card.nodes = card.sheets = {1, 2};
+  const Result<deck::WrittenCard> written = writer->element_like(document.deck->files[place->file].bytes.text(), *place, card);
+  return written ? Result<void>() : fail(written.error());
+}
+
+/// The beams and springs whose nodes lie on sheets: the nearest of each part, as "beam:9"; ascending by their distance from the place.
+std::vector<std::string> nearest_welds(const Generation& generation, const Vec3& place) {
   const Model& model = generation.model;
   const std::vector<NodeOnSheet>& on_sheets = generation.relations->dependents.on_sheets;
   const auto lies = [&](NodeIndex node) {
@@ -111,8 +136,7 @@ Result<std::string> nearest_weld(const Generation& generation, const Vec3& place
         std::lower_bound(on_sheets.begin(), on_sheets.end(), node, [](const NodeOnSheet& each, NodeIndex n) { return each.node < n; });
     return at != on_sheets.end() && at->node == node && !at->tied;
   };
-  std::string nearest;
-  double least = 0;
+  std::map<PartIndex, std::pair<double, std::string>> nearest;
   for (const NodeOnSheet& each : on_sheets) {
     if (each.tied) continue;
     for (const ElementUse& use : uses_at(*generation.relations, each.node)) {
@@ -123,15 +147,38 @@ Result<std::string> nearest_weld(const Generation& generation, const Vec3& place
       const std::uint32_t first = block->first_node[use.element];
       if (!lies(block->nodes[first]) || !lies(block->nodes[first + 1])) continue;
       const double distance = (0.5 * (model.position(block->nodes[first]) + model.position(block->nodes[first + 1])) - place).norm();
-      if (!nearest.empty() && !(distance < least)) continue;
-      least = distance;
-      nearest = std::string(name(use.element_class)) + ":" + std::to_string(block->id[use.element]);
+      const auto [of_part, is_first] = nearest.try_emplace(block->part[use.element], distance, std::string());
+      if (!is_first && !(distance < of_part->second.first)) continue;
+      of_part->second = {distance, std::string(name(use.element_class)) + ":" + std::to_string(block->id[use.element])};
     }
   }
-  if (nearest.empty())
-    return fail(
-        "", "weld: \"like\": \"nearest\": the deck has no beam or spring that joins sheets; \"diameter\" makes welds without an example");
-  return nearest;
+  std::vector<std::pair<double, std::string>> ordered;
+  for (auto& [part, weld] : nearest) ordered.push_back(std::move(weld));
+  std::sort(ordered.begin(), ordered.end());
+  std::vector<std::string> welds;
+  for (auto& [distance, weld] : ordered) welds.push_back(std::move(weld));
+  return welds;
+}
+
+/// The nearest that can be the example. Errors: the deck has none; none can be.
+Result<WeldKind> like_nearest(const Document& document, const Vec3& place, EditReport& report) {
+  constexpr std::size_t kMaxTried = 20;
+  std::string first;
+  std::size_t tried = 0;
+  for (const std::string& each : nearest_welds(document.current(), place)) {
+    if (tried++ == kMaxTried) break;
+    Result<WeldKind> like = like_existing(document, each);
+    if (like)
+      if (const Result<void> can = can_be_example(document, *like); !can) like = fail(can.error());
+    if (like) {
+      report.notes.push_back("like " + each + (first.empty() ? "" : ", the nearest of a part that can be the example"));
+      return like;
+    }
+    if (first.empty()) first = like.error().message;
+  }
+  if (!first.empty()) return fail("", "weld: \"like\": \"nearest\": no weld of the deck can be the example; the nearest: " + first);
+  return fail("",
+              "weld: \"like\": \"nearest\": the deck has no beam or spring that joins sheets; \"diameter\" makes welds without an example");
 }
 
 /// Of the sheets' parts, the least stiff of a value: a weld isn't better than what it joins.
@@ -160,6 +207,7 @@ Result<WeldKind> make_part(const Document& document, const Weld& edit, const std
   Result<std::pair<Part, std::string>> made = deck::card_writer(document.deck->format)->weld_part(*document.deck, model, wanted);
   if (!made) return fail("", "weld: " + made.error().text());
   WeldKind kind;
+  kind.element_class = deck::card_writer(document.deck->format)->weld_class();
   kind.part = add_part(model, std::move(made->first), {std::move(made->second)});
   grow_parts(model.parts->size(), next);
   return kind;
@@ -203,11 +251,24 @@ struct WantedWeld {
   std::vector<SheetAtSpot> sheets;
 };
 
+/// The corner of the sheet's shell nearest to the spot whose shells are all of the sheet's part; nothing if none is.
+std::optional<NodeOrigin> corner_of_one_part(const deck::PartsAtNodes& parts, const Model& model, const SheetAtSpot& sheet) {
+  std::optional<NodeIndex> nearest;
+  for (const NodeIndex node : model.shell(sheet.shell).node)
+    if (parts.part_at(model, node) == model.shell_parts[sheet.shell.value] &&
+        (!nearest || (model.position(node) - sheet.point).squaredNorm() < (model.position(*nearest) - sheet.point).squaredNorm()))
+      nearest = node;
+  if (!nearest) return std::nullopt;
+  return NodeOrigin{{*nearest, NodeIndex(), NodeIndex(), NodeIndex()}, {1, 0, 0, 0}};
+}
+
 class SpotSearch {
  public:
   /// `kind`: what the welds are like; null: a part that is made for them.
-  SpotSearch(const Generation& generation, const Weld& edit, const WeldKind* kind, EditReport& report)
+  /// `named`: of formats whose cards name the parts of the sheets; else null.
+  SpotSearch(const Generation& generation, const Weld& edit, const WeldKind* kind, const deck::PartsAtNodes* named, EditReport& report)
       : generation_(generation),
+        named_(named),
         edit_(edit),
         kind_(kind),
         report_(report),
@@ -274,8 +335,22 @@ class SpotSearch {
         if (const PartIndex part = part_of(sheet); part != kind_->sheets[0] && part != kind_->sheets[1])
           return leave(place, "the ties of the existing weld hold " + sheet_part_words(model, kind_->sheets[0]) + " and " +
                                   sheet_part_words(model, kind_->sheets[1]) + ", not " + sheet_part_words(model, part));
+    if (const std::string why = why_not_named(sheets); !why.empty()) return leave(place, why);
     for (const SheetAtSpot& sheet : sheets) there_.add(sheet.point);
     welds.push_back({place, std::move(sheets)});
+  }
+
+  /// Where the card names the sheets by their parts: why it can't; else empty.
+  std::string why_not_named(const std::vector<SheetAtSpot>& sheets) const {
+    if (!named_) return {};
+    for (std::size_t s = 0; s < sheets.size(); ++s) {
+      const PartIndex part = part_of(sheets[s]);
+      if (s > 0 && part == part_of(sheets[s - 1]))
+        return "both sheets are of " + sheet_part_words(generation_.model, part) + ", and a weld's card names two parts";
+      if (!corner_of_one_part(*named_, generation_.model, sheets[s]))
+        return "the corners of the shell there belong to several parts, so that the weld's card can't name its sheet";
+    }
+    return {};
   }
 
   PartIndex part_of(const SheetAtSpot& sheet) const { return generation_.model.shell_parts[sheet.shell.value]; }
@@ -301,6 +376,7 @@ class SpotSearch {
   }
 
   const Generation& generation_;
+  const deck::PartsAtNodes* named_;
   const Weld& edit_;
   const WeldKind* kind_;
   EditReport& report_;
@@ -322,7 +398,9 @@ std::vector<PartIndex> parts_joined(const Model& model, const std::vector<Wanted
 }
 
 /// What a new node's card follows: the example's end on the same part, if there is one, before the other.
-NodeOrigin origin_on(const Model& model, const WeldKind& kind, const SheetAtSpot& sheet) {
+NodeOrigin origin_on(const Model& model, const WeldKind& kind, const deck::PartsAtNodes* named, const SheetAtSpot& sheet) {
+  if (named != nullptr)
+    if (const std::optional<NodeOrigin> corner = corner_of_one_part(*named, model, sheet)) return *corner;
   if (!kind.ends) return corner_origin(model, sheet);
   const PartIndex part = model.shell_parts[sheet.shell.value];
   const auto [first, second] = *kind.ends;
@@ -336,12 +414,13 @@ std::uint32_t joins_on(const Model& model, const WeldKind& kind, const SheetAtSp
 }
 
 /// A node on each sheet, and an element between each and the next.
-Result<void> add_welds(const Document& document, const WeldKind& kind, const std::vector<WantedWeld>& welds, Model& model) {
+Result<void> add_welds(const Document& document, const WeldKind& kind, const deck::PartsAtNodes* named,
+                       const std::vector<WantedWeld>& welds, Model& model) {
   deck::NewIds ids(*document.deck, model);
   for (const WantedWeld& weld : welds) {
     std::vector<NodeIndex> nodes;
     for (const SheetAtSpot& sheet : weld.sheets) {
-      const NodeOrigin origin = origin_on(model, kind, sheet);
+      const NodeOrigin origin = origin_on(model, kind, named, sheet);
       const std::uint32_t joins = joins_on(model, kind, sheet);
       const Result<std::int64_t> id = ids.placed_node(origin, joins);
       if (!id) return fail(id.error());
@@ -356,14 +435,26 @@ Result<void> add_welds(const Document& document, const WeldKind& kind, const std
   return deck::can_restructure(*document.deck, document.opened->model, model, {});
 }
 
+/// Whether a format has the form; `like`: an existing weld is the example.
+bool makes_form(deck::Format format, std::string_view form, bool like) {
+  switch (format) {
+    case deck::Format::ls_dyna: return form == "beam" || form == "spring";
+    case deck::Format::radioss: return form == "beam" || form == "spring";
+    case deck::Format::nastran: return form == "cweld" || (form == "cfast" && like);
+    case deck::Format::abaqus: return form == "fastener";
+    default: return false;
+  }
+}
+
 /// Errors: what the edit asks for isn't made in this version, or contradicts itself.
 Result<void> check_form(const Document& document, const Weld& edit) {
-  const std::string as = edit.as.value_or("beam");
   constexpr std::string_view kForms[] = {"beam", "spring", "solid", "constrained", "cweld", "cfast", "fastener"};
-  if (std::find(std::begin(kForms), std::end(kForms), as) == std::end(kForms))
-    return fail("", "weld: \"as\" must be \"beam\", not \"" + as + "\"");
-  if (as != "beam" && as != "spring")
-    return fail("", "weld: this version makes no welds as \"" + as + "\": it makes beams in LS-DYNA decks and springs in Radioss decks");
+  if (edit.as && std::find(std::begin(kForms), std::end(kForms), *edit.as) == std::end(kForms))
+    return fail("", "weld: \"as\" must be \"beam\", \"spring\", \"cweld\", \"cfast\" or \"fastener\", not \"" + *edit.as + "\"");
+  if (edit.as && !makes_form(document.deck->format, *edit.as, edit.like.has_value()))
+    return fail("", "weld: this version makes no welds as \"" + *edit.as + "\" in " + std::string(name(document.deck->format)) +
+                        " decks: it makes beams in LS-DYNA decks, springs in Radioss decks, CWELD in Nastran decks (CFAST like an existing "
+                        "one) and fasteners in Abaqus decks");
   if (edit.like && edit.diameter)
     return fail("", "weld: \"diameter\" belongs to the section, which \"like\" takes from the existing weld; only one can be given");
   if (edit.like && (edit.density || edit.youngs_modulus || edit.poissons_ratio || edit.yield_stress))
@@ -378,25 +469,25 @@ Result<void> apply_edit(const Document& document, const Weld& edit, Generation& 
   const Generation& before = document.current();
   if (const Result<void> sound = check_form(document, edit); !sound) return sound;
   std::optional<WeldKind> kind;
-  const bool like_nearest = edit.like == "nearest";
-  if (edit.like && !like_nearest) {  // before the places are looked for: a wrong name is told at once
+  const bool is_nearest_wanted = edit.like == "nearest";
+  if (edit.like && !is_nearest_wanted) {  // before the places are looked for: a wrong name is told at once
     Result<WeldKind> like = like_existing(document, *edit.like);
     if (!like) return fail(like.error());
     kind = *like;
   }
   const Result<std::vector<WeldLine>> lines = weld_places(document, edit, progress);
   if (!lines) return fail(lines.error());
-  if (like_nearest) {
+  if (is_nearest_wanted) {
     const auto first = std::find_if(lines->begin(), lines->end(), [](const WeldLine& line) { return !line.places.empty(); });
-    const Result<std::string> nearest = nearest_weld(before, first != lines->end() ? first->places.front() : Vec3(Vec3::Zero()));
-    if (!nearest) return fail(nearest.error());
-    Result<WeldKind> like = like_existing(document, *nearest);
+    Result<WeldKind> like = like_nearest(document, first != lines->end() ? first->places.front() : Vec3(Vec3::Zero()), report);
     if (!like) return fail(like.error());
     kind = *like;
-    report.notes.push_back("like " + *nearest);
   }
   std::vector<WantedWeld> welds;
-  SpotSearch search(before, edit, kind ? &*kind : nullptr, report);
+  std::optional<deck::PartsAtNodes> parts_at_nodes;
+  if (deck::card_writer(document.deck->format)->names_sheets()) parts_at_nodes.emplace(document.opened->model);
+  const deck::PartsAtNodes* const named = parts_at_nodes ? &*parts_at_nodes : nullptr;
+  SpotSearch search(before, edit, kind ? &*kind : nullptr, named, report);
   for (const WeldLine& line : *lines) {
     search.search(line, welds);
     if (!line.note.empty()) report.notes.push_back(line.note);
@@ -408,12 +499,17 @@ Result<void> apply_edit(const Document& document, const Weld& edit, Generation& 
   if (kind)
     if (const Result<void> open = refuse_locked(before, {kind->part}, "elements", "weld"); !open) return open;
   if (kind) note_untied(document, kind->part, sheets, "welds", report);
+  if (kind && document.deck->format == deck::Format::abaqus)
+    for (const PartIndex sheet : sheets)
+      if (sheet != kind->sheets[0] && sheet != kind->sheets[1])
+        report.notes.push_back("the existing weld doesn't join " + sheet_part_words(before.model, sheet) +
+                               ": welds there hold only if the fastener's surface has it too");
   if (!kind) {
     Result<WeldKind> made = make_part(document, edit, sheets, next);
     if (!made) return fail(made.error());
     kind = *made;
   }
-  if (const Result<void> added = add_welds(document, *kind, welds, next.model); !added) return added;
+  if (const Result<void> added = add_welds(document, *kind, named, welds, next.model); !added) return added;
 
   settle_growth(before, {}, next);
   grow_relations(before.model, next);

@@ -1,4 +1,5 @@
 // Plain-text output: each figure, and the messages for invalid journals and decks.
+#include "cli/report_text.h"
 #include "mesh/document/edit_json.h"
 #include "tests/cli/cli_fixture.h"
 
@@ -47,6 +48,19 @@ TEST_F(Cli, diff_counts_the_lines_of_files_that_only_one_deck_has) {
   const std::string b = write("b/main.k", "*KEYWORD\n*INCLUDE\nrest.k\n*INCLUDE\nmore.k\n*END\n");
   EXPECT_EQ(prismesh({"diff", a, b, "--json"}).json()["lines_changed"], 2 + 3);
   EXPECT_EQ(prismesh({"diff", b, a, "--json"}).json()["lines_changed"], 2 + 3);
+}
+
+TEST(ChangeWords, say_what_was_made_instead_of_no_nodes_that_moved) {
+  mesh::document::EditReport report;
+  EXPECT_EQ(change_words(report), "0 nodes moved");
+  report.elements_added = 2, report.elements_removed = 1;
+  EXPECT_EQ(change_words(report), "2 elements added, 1 element removed");
+  report.nodes_moved = 3;
+  EXPECT_EQ(change_words(report), "3 nodes moved, 2 elements added, 1 element removed");
+  report.welds_mended.emplace().mended = 1;
+  EXPECT_EQ(change_words(report), "1 weld mended, 3 nodes moved, 2 elements added, 1 element removed");
+  report.welded.emplace().welds_added = 6;
+  EXPECT_EQ(change_words(report), "6 welds added");
 }
 
 TEST_F(Cli, replay_says_each_edit_and_how_many_were_done) {

@@ -102,6 +102,8 @@ constexpr Rule kRules[] = {
     {"ENERGY PRINT", Shape::nothing},
     {"EQUATION", Shape::equation},
     {"EXPANSION", Shape::nothing},
+    {"FASTENER", Shape::nothing},
+    {"FASTENER PROPERTY", Shape::nothing},
     {"FIELD", Shape::node},
     {"FILE FORMAT", Shape::nothing},
     {"FILM", Shape::element},

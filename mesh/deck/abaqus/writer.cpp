@@ -4,8 +4,11 @@
 #include <cmath>
 #include <optional>
 
+#include "mesh/deck/abaqus/card_fields.h"
+#include "mesh/deck/abaqus/element_writer.h"
 #include "mesh/deck/abaqus/keyword.h"
 #include "mesh/deck/abaqus/mesh_cards.h"
+#include "mesh/deck/abaqus/part_cards.h"
 #include "mesh/deck/abaqus/references.h"
 #include "mesh/deck/text/format_number.h"
 #include "mesh/deck/text/number.h"
@@ -17,47 +20,10 @@ namespace {
 /// "Floating point numbers can occupy 20 spaces at most, including the sign, the point and the exponent."
 constexpr std::size_t kNumberWidth = 20;
 constexpr std::int64_t kMaxId = 999'999'999;
-constexpr std::size_t kIdsOnALine = 16;
-
-std::size_t end_of_line(std::string_view text, std::size_t offset) {
-  const std::size_t end = std::min(text.find('\n', offset), text.size());
-  return end > offset && text[end - 1] == '\r' ? end - 1 : end;
-}
 
 /// The card's first line, without its end.
 std::string_view first_line(const CardRef& card) {
   return card.text.substr(card.offset, end_of_line(card.text, card.offset) - card.offset);
-}
-
-/// A field in a card's text: between its commas, blanks included.
-struct FieldRange {
-  std::size_t begin = 0;
-  std::size_t length = 0;
-};
-
-/// The fields of a line. Blanks behind the last comma are no field.
-std::vector<FieldRange> places_of_line(std::string_view line, std::size_t at) {
-  std::vector<FieldRange> out;
-  for (std::size_t begin = 0; begin <= line.size();) {
-    const std::size_t comma = std::min(line.find(',', begin), line.size());
-    if (comma == line.size() && trim(line.substr(begin)).empty()) break;
-    out.push_back({at + begin, comma - begin});
-    begin = comma + 1;
-  }
-  return out;
-}
-
-bool starts_with_blanks(std::string_view field) { return field.size() > 1 && field[0] == ' ' && field[1] == ' '; }
-
-/// The new text in the old field, with the blanks around it. In a column it ends where the old text did, if it fits.
-std::string in_place_of(std::string_view old, const std::string& text, bool column) {
-  const std::string_view shown = trim(old);
-  if (shown.empty()) return (old.empty() ? "" : " ") + text;
-  const auto before = static_cast<std::size_t>(shown.data() - old.data());
-  const std::size_t room = before + shown.size();
-  std::string out(old.substr(0, before));
-  if (column && before > 0) out.assign(room > text.size() ? room - text.size() : 1, ' ');
-  return out + text + std::string(old.substr(room));
 }
 
 std::string number_text(double value, WrittenCard& card) {
@@ -134,7 +100,7 @@ class Writer : public CardWriter {
 
   std::size_t shell_end(const CardRef& card) const override {
     std::size_t end = card.offset;
-    cut(card, nodes_of(card.style) + 1, end);
+    cut_card(card.text, card.offset, nodes_of(card.style) + 1, end);
     return end;
   }
 
@@ -179,7 +145,7 @@ class Writer : public CardWriter {
     if (triangle && corners == 4) return fail("", "is of a type with four corners, so a triangle can't be written like it");
     if (!triangle && corners == 3) return fail("", "is of a type with three corners, so a quad can't be written like it");
     std::size_t end = card.offset;
-    const std::vector<FieldRange> places = cut(card, corners + 1, end);
+    const std::vector<FieldRange> places = cut_card(card.text, card.offset, corners + 1, end);
     if (places.size() < corners + 1) return fail("", "has a card that can't be read");
     WrittenCard written;
     written.text = std::string(card.text.substr(card.offset, end - card.offset));
@@ -252,7 +218,7 @@ class Writer : public CardWriter {
       return fail("", "belongs to an instance whose numbers are shown changed, or to a part with several");
     const std::size_t corners = nodes_of(card.style), wanted = shell.nodes[3] == shell.nodes[2] ? 3 : 4;
     std::size_t end = card.offset;
-    const std::vector<FieldRange> places = cut(card, corners + 1, end);
+    const std::vector<FieldRange> places = cut_card(card.text, card.offset, corners + 1, end);
     if (places.size() < corners + 1) return fail("", "has a card that can't be read");
     WrittenCard written;
     for (std::size_t f = 0; f <= wanted; ++f) {
@@ -314,6 +280,28 @@ class Writer : public CardWriter {
     }
     const bool unended = tail.at == text.size() && tail.at > 0 && text[tail.at - 1] != '\n';
     return std::vector<Replacement>{{tail.at, 0, unended ? tail.line_end + lines : lines + tail.line_end}};
+  }
+
+  Result<ElementPlace> find_element(const Deck& deck, ElementClass element_class, std::int64_t id,
+                                    std::span<const std::int64_t> nodes) const override {
+    return abaqus::find_element(deck, element_class, id, nodes);
+  }
+  Result<WrittenCard> element_like(std::string_view text, const ElementPlace& example, const ElementCard& element) const override {
+    return abaqus::element_like(text, example, element);
+  }
+  std::size_t end_of_cards(std::string_view text) const override { return abaqus::end_of_model(text); }
+  Result<std::string> element_header(ElementClass element_class, const Part& part) const override {
+    return abaqus::element_header(element_class, part);
+  }
+  Result<WrittenCard> new_element(std::string_view, ElementClass, const ElementCard& element) const override {
+    return abaqus::new_element(element);
+  }
+  ElementClass weld_class() const override { return ElementClass::discrete; }
+  Result<std::pair<Part, std::string>> weld_part(const Deck& deck, const Model& model, const WeldPart& wanted) const override {
+    return abaqus::weld_part(deck, model, wanted);
+  }
+  Result<std::pair<Part, std::string>> bond_part(const Deck& deck, const Model& model, const BondPart& wanted) const override {
+    return abaqus::bond_part(deck, model, wanted);
   }
 
   std::int64_t largest_node_id(std::uint16_t style) const override { return (style & kStyleShifted) != 0 ? 0 : kMaxId; }
@@ -381,20 +369,6 @@ class Writer : public CardWriter {
     for (std::size_t f = 1; f < std::min<std::size_t>(places.size(), 4); ++f)
       column |= starts_with_blanks(std::string_view(card.text).substr(places[f].begin, places[f].length));
     card.text.replace(place.begin, place.length, in_place_of(old, number_text(value, card), column));
-  }
-
-  /// The first `wanted` fields of a card, which may have several lines. `end` gets the end of the line of the last one.
-  static std::vector<FieldRange> cut(const CardRef& card, std::size_t wanted, std::size_t& end) {
-    std::vector<FieldRange> out;
-    DataLines lines(card.text, card.offset, card.text.size());
-    DataLine line;
-    while (out.size() < wanted && lines.next(line)) {
-      for (const FieldRange& place : places_of_line(line.text, line.offset))
-        if (out.size() < wanted) out.push_back(place);
-      end = end_of_line(card.text, line.offset);
-      if (line.text.back() != ',' && out.size() % kIdsOnALine != 0) break;
-    }
-    return out;
   }
 };
 

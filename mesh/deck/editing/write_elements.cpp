@@ -1,12 +1,14 @@
 #include "mesh/deck/editing/write_elements.h"
 
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 
 #include "mesh/deck/editing/edit_text.h"
 #include "mesh/deck/editing/element_place.h"
+#include "mesh/deck/editing/parts_at_nodes.h"
 #include "mesh/deck/editing/text_place.h"
 #include "mesh/deck/text/text_lines.h"
 
@@ -19,8 +21,8 @@ struct AddedElement {
   std::uint32_t element = 0;
 };
 
-/// What its card must say, with ids as in a file's text.
-ElementCard wanted_card(const Model& model, const AddedElement& added, const IdOffsets& offsets) {
+/// What its card must say, with ids as in a file's text. `sheets`: null if the card doesn't name them.
+ElementCard wanted_card(const Model& model, const AddedElement& added, const IdOffsets& offsets, const PartsAtNodes* sheets) {
   const ElementBlock& block = *model.elements[static_cast<std::size_t>(added.element_class)];
   ElementCard card;
   card.element_class = added.element_class;
@@ -28,6 +30,10 @@ ElementCard wanted_card(const Model& model, const AddedElement& added, const IdO
   if (const PartIndex part = block.part[added.element]; part.valid()) card.part = (*model.parts)[part.value].id - offsets.part;
   for (std::size_t n = block.first_node[added.element]; n < block.first_node[added.element + 1]; ++n)
     card.nodes.push_back(model.node_ids[block.nodes[n].value] - offsets.node);
+  for (std::size_t n = block.first_node[added.element]; sheets != nullptr && n < block.first_node[added.element + 1]; ++n) {
+    const PartIndex part = sheets->part_at(model, block.nodes[n]);
+    card.sheets.push_back(part.valid() ? (*model.parts)[part.value].id - offsets.part : 0);
+  }
   return card;
 }
 
@@ -68,7 +74,7 @@ class ElementWriting {
     }
     const ElementPlace& place = known->second;
     const std::string_view text = deck.files[place.file].bytes.text();
-    const ElementCard card = wanted_card(difference_.model, added, deck.offsets_in(place.file).value_or(IdOffsets()));
+    const ElementCard card = wanted_card(difference_.model, added, deck.offsets_in(place.file).value_or(IdOffsets()), sheets());
     Result<WrittenCard> written = WrittenCard{};
     if (const Result<void> fits = check_fields(difference_.writer, place.style, card); !fits)
       written = fail(fits.error());
@@ -82,21 +88,30 @@ class ElementWriting {
   Result<void> write_at_end(const AddedElement& added) {
     const Deck& deck = difference_.deck;
     const std::string_view text = deck.files[0].bytes.text();
-    const Result<std::string> header = difference_.writer.element_header(added.element_class);
+    const PartIndex part = difference_.model.elements[static_cast<std::size_t>(added.element_class)]->part[added.element];
+    const Result<std::string> header =
+        difference_.writer.element_header(added.element_class, part.valid() ? (*difference_.model.parts)[part.value] : Part());
     Result<WrittenCard> written =
-        header ? difference_.writer.new_element(text, added.element_class, wanted_card(difference_.model, added, IdOffsets()))
+        header ? difference_.writer.new_element(text, added.element_class, wanted_card(difference_.model, added, IdOffsets(), sheets()))
                : fail(header.error());
     if (!written) return fail(refusal(deck, name_of(added) + " " + written.error().message));
     const std::size_t end = difference_.writer.end_of_cards(text);
     const std::string eol(line_end(text, std::min(text.find('\n'), text.size())));
     std::string& lines = edits_.new_blocks[{0, end, *header}];
-    if (lines.empty()) lines = *header + eol;
+    if (lines.empty() && !header->empty()) lines = *header + eol;
     lines += written->text + eol;
     return {};
   }
 
+  const PartsAtNodes* sheets() {
+    if (!difference_.writer.names_sheets()) return nullptr;
+    if (!sheets_) sheets_.emplace(difference_.original);
+    return &*sheets_;
+  }
+
   const ModelDifference& difference_;
   TextEdits& edits_;
+  std::optional<PartsAtNodes> sheets_;
   std::map<std::pair<ElementClass, std::uint32_t>, ElementPlace> places_;
 };
 

@@ -115,7 +115,7 @@ class Writer : public CardWriter {
     return lsdyna::element_like(text, example, element);
   }
   std::size_t end_of_cards(std::string_view text) const override { return lsdyna::end_of_cards(text); }
-  Result<std::string> element_header(ElementClass element_class) const override {
+  Result<std::string> element_header(ElementClass element_class, const Part&) const override {
     return element_class == ElementClass::solid ? "*ELEMENT_SOLID" : "*ELEMENT_BEAM";
   }
   Result<WrittenCard> new_element(std::string_view text, ElementClass element_class, const ElementCard& element) const override {

@@ -110,4 +110,23 @@ bool Replication::fill(Card& card) const {
   return true;
 }
 
+Card card_at(std::string_view text, std::size_t offset) {
+  CardLines lines;
+  lines.read(text, offset);
+  Card card;
+  card.cut(lines);
+  return card;
+}
+
+bool is_replicated(std::string_view text, std::size_t offset) {
+  if (text[offset] == '=') return true;
+  CardLines lines;
+  lines.read(text, offset);
+  if (lines.next < text.size() && text[lines.next] == '=') return true;
+  if (takes_fields(card_at(text, offset))) return true;
+  std::size_t next = lines.next;
+  while (next < text.size() && kind_of(line_at(text, next).text) == LineKind::comment) next = line_at(text, next).next;
+  return next < text.size() && starts_card(line_at(text, next).text) && takes_fields(card_at(text, next));
+}
+
 }  // namespace prismesh::mesh::deck::nastran

@@ -13,6 +13,13 @@ namespace prismesh::mesh::deck::nastran {
 /// Whether the card, a grid point or an element, takes fields from the card before.
 bool takes_fields(const Card& card);
 
+/// The card at `offset` of a text.
+Card card_at(std::string_view text, std::size_t offset);
+
+/// Whether the card at `offset` is a replication or is replicated: its text then makes more than one card. So does text that takes fields
+/// from the card before. Precondition: offset < text.size().
+bool is_replicated(std::string_view text, std::size_t offset);
+
 class Replication {
  public:
   /// The card that replications refer to from here on.

@@ -6,9 +6,11 @@
 #include "base/letter_case.h"
 #include "mesh/deck/nastran/card_edit.h"
 #include "mesh/deck/nastran/case_set.h"
+#include "mesh/deck/nastran/element_writer.h"
 #include "mesh/deck/nastran/elements.h"
 #include "mesh/deck/nastran/references.h"
 #include "mesh/deck/nastran/replication.h"
+#include "mesh/deck/nastran/weld_cards.h"
 #include "mesh/deck/text/format_number.h"
 #include "mesh/deck/text/number.h"
 
@@ -23,14 +25,6 @@ constexpr std::size_t kSuperelement = 7;
 
 /// An edge that turns by less (degrees) counts as not turned.
 constexpr double kTurned = 1e-9;
-
-Card card_at(std::string_view text, std::size_t offset) {
-  CardLines lines;
-  lines.read(text, offset);
-  Card card;
-  card.cut(lines);
-  return card;
-}
 
 std::string number_for(double value, std::size_t width, WrittenCard& card) {
   std::string text = format_coordinate(value, width, Exponent::bare);
@@ -50,19 +44,6 @@ std::vector<std::string> fields_of(const Card& card) {
 }
 
 std::int64_t largest_id(std::uint16_t style) { return is_large(static_cast<Layout>(style)) ? 9999999999999999 : 99999999; }
-
-/// Whether the card at `offset` is a replication or is replicated: its text then makes more than one card. So does text that takes fields
-/// from the card before. Precondition: offset < text.size().
-bool is_replicated(std::string_view text, std::size_t offset) {
-  if (text[offset] == '=') return true;
-  CardLines lines;
-  lines.read(text, offset);
-  if (lines.next < text.size() && text[lines.next] == '=') return true;
-  if (takes_fields(card_at(text, offset))) return true;
-  std::size_t next = lines.next;
-  while (next < text.size() && kind_of(line_at(text, next).text) == LineKind::comment) next = line_at(text, next).next;
-  return next < text.size() && starts_card(line_at(text, next).text) && takes_fields(card_at(text, next));
-}
 
 /// The element of the same kind with that number of corners; empty: there is none.
 std::string_view name_with(std::string_view name, int corners) {
@@ -342,6 +323,24 @@ class Writer : public CardWriter {
       replacement.text += manner.line_end + write_card(card.name(), fields, manner);
     }
     return std::vector<Replacement>{std::move(replacement)};
+  }
+
+  Result<deck::ElementPlace> find_element(const Deck& deck, ElementClass element_class, std::int64_t id,
+                                          std::span<const std::int64_t>) const override {
+    return nastran::find_element(deck, element_class, id);
+  }
+  Result<WrittenCard> element_like(std::string_view text, const deck::ElementPlace& example, const ElementCard& element) const override {
+    return weld_like(text, example.offset, element);
+  }
+  bool names_sheets() const override { return true; }
+  ElementClass weld_class() const override { return ElementClass::discrete; }
+  std::size_t end_of_cards(std::string_view text) const override { return end_of_bulk_data(text); }
+  Result<std::string> element_header(ElementClass, const Part&) const override { return std::string(); }
+  Result<WrittenCard> new_element(std::string_view text, ElementClass, const ElementCard& element) const override {
+    return new_weld(text, element);
+  }
+  Result<std::pair<Part, std::string>> weld_part(const Deck& deck, const Model& model, const WeldPart& wanted) const override {
+    return nastran::weld_part(deck, model, wanted);
   }
 
   std::int64_t largest_node_id(std::uint16_t style) const override { return largest_id(style); }

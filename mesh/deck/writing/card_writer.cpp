@@ -51,14 +51,14 @@ Result<WrittenCard> CardWriter::element_like(std::string_view, const ElementPlac
 
 Result<std::pair<Part, std::string>> CardWriter::weld_part(const Deck& deck, const Model&, const WeldPart&) const {
   return fail("", "this version makes no part of welds in " + std::string(name(deck.format)) +
-                      " decks, but in LS-DYNA decks; in Radioss decks \"like\" copies an existing spring");
+                      " decks, but in LS-DYNA, Nastran and Abaqus decks; in Radioss decks \"like\" copies an existing spring");
 }
 
 Result<std::pair<Part, std::string>> CardWriter::bond_part(const Deck& deck, const Model&, const BondPart&) const {
-  return fail("", "this version makes no bonds in " + std::string(name(deck.format)) + " decks, but in LS-DYNA decks");
+  return fail("", "this version makes no bonds in " + std::string(name(deck.format)) + " decks, but in LS-DYNA and Abaqus decks");
 }
 
-Result<std::string> CardWriter::element_header(ElementClass) const { return fail("", "has no example to be written like"); }
+Result<std::string> CardWriter::element_header(ElementClass, const Part&) const { return fail("", "has no example to be written like"); }
 
 Result<WrittenCard> CardWriter::new_element(std::string_view, ElementClass, const ElementCard&) const {
   return fail("", "has no example to be written like");

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -112,10 +113,16 @@ class CardWriter {
   /// A new element's card in the format of the one at `example`, of the same part. Everything but its id and nodes is carried over.
   virtual Result<WrittenCard> element_like(std::string_view text, const ElementPlace& example, const ElementCard& element) const;
 
+  /// Whether the card of a weld names the parts of the sheets that it joins (ElementCard::sheets).
+  virtual bool names_sheets() const { return false; }
+  /// The class of the welds of weld_part.
+  virtual ElementClass weld_class() const { return ElementClass::beam; }
+
   /// Where cards without an example go: behind all others of the main file, before the line that ends it.
   virtual std::size_t end_of_cards(std::string_view text) const { return text.size(); }
-  /// The keyword line of such a block for elements of a class, and a card in it. Errors: as shell_in_block.
-  virtual Result<std::string> element_header(ElementClass element_class) const;
+  /// The keyword line of such a block for elements of a class and a part (empty: cards need none), and a card in it. Errors: as
+  /// shell_in_block.
+  virtual Result<std::string> element_header(ElementClass element_class, const Part& part) const;
   virtual Result<WrittenCard> new_element(std::string_view text, ElementClass element_class, const ElementCard& element) const;
 
   /// What a part of new welds needs that no existing weld is an example for.
@@ -133,8 +140,16 @@ class CardWriter {
 
   /// What a part of adhesive needs that no existing solid is an example for.
   struct BondPart {
+    /// A side of the shells of a part.
+    struct SheetSide {
+      std::int64_t part = 0;
+      bool positive = false;  ///< the side to which the normal points
+      auto operator<=>(const SheetSide&) const = default;
+    };
     std::vector<std::int64_t> sheets;  ///< ids of the parts that it joins, ascending
-    double density = 0;                ///< of the adhesive; deck's units, here and below
+    /// The sides that face the first four corners of the hexahedra, and those that face the other four; ascending, each once.
+    std::array<std::vector<SheetSide>, 2> facing;
+    double density = 0;  ///< of the adhesive; deck's units, here and below
     double youngs_modulus = 0;
     double poissons_ratio = 0;
   };

@@ -50,6 +50,7 @@ struct ElementCard {
   std::int64_t id = 0;
   std::int64_t part = 0;
   std::vector<std::int64_t> nodes;
+  std::vector<std::int64_t> sheets;  ///< of each node: the part on whose shells it lies, 0: none or several. For writers that ask for it
 };
 
 /// How a card that names a single node or shell (ReferenceRole::single) applies to what comes from that one: to a node between others

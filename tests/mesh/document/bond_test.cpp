@@ -13,6 +13,7 @@
 #include "mesh/connections/bond_strip.h"
 #include "mesh/document/deck_relations.h"
 #include "mesh/document/journal.h"
+#include "tests/mesh/document/abaqus_flange.h"
 #include "tests/mesh/document/weld_deck.h"
 
 namespace prismesh::mesh::document {
@@ -273,6 +274,86 @@ TEST(BondSolid, has_no_positive_volume_when_folded_or_turned_over) {
   std::swap(at[1], at[3]), std::swap(at[5], at[7]);
   at[6].z() = -1;
   EXPECT_LT(connections::least_corner_volume(at), 0);
+}
+
+// --- Abaqus ---
+
+TEST_F(BondEdit, is_tied_in_abaqus_decks_by_a_surface_for_each_sheet) {
+  Document document = open_deck(folder / "flange.inp", abaqus_flange());
+  const EditReport report = bond(document, bond_json(R"("width": 10, "length": 8)"));
+  EXPECT_EQ(report.bonded->solids_added, 15u);
+  const std::string after = saved(document);
+  EXPECT_THAT(after, HasSubstr("*ELEMENT, TYPE=C3D8, ELSET=ADHESIVE-3\n"));
+  EXPECT_THAT(after, HasSubstr("*MATERIAL, NAME=ADHESIVE-3\n*DENSITY\n1.2e-09\n*ELASTIC\n2000., 0.4\n"
+                               "*SOLID SECTION, ELSET=ADHESIVE-3, MATERIAL=ADHESIVE-3\n"
+                               "*SURFACE, NAME=ADHESIVE-3-A, TYPE=ELEMENT\nADHESIVE-3, S1\n"
+                               "*SURFACE, NAME=ADHESIVE-3-SHEETS-A, TYPE=ELEMENT\nlower, SPOS\n"
+                               "*TIE, NAME=ADHESIVE-3-A, ADJUST=NO, POSITION TOLERANCE=0.9\nADHESIVE-3-A, ADHESIVE-3-SHEETS-A\n"
+                               "*SURFACE, NAME=ADHESIVE-3-B, TYPE=ELEMENT\nADHESIVE-3, S2\n"
+                               "*SURFACE, NAME=ADHESIVE-3-SHEETS-B, TYPE=ELEMENT\nupper, SNEG\n"
+                               "*TIE, NAME=ADHESIVE-3-B, ADJUST=NO, POSITION TOLERANCE=0.9\nADHESIVE-3-B, ADHESIVE-3-SHEETS-B\n"
+                               "*STEP\n"));
+  const Document again = open(folder / "saved.k", {}).value();
+  ASSERT_EQ(solids(again).size(), 15u);
+  for (std::size_t e = 0; e < 15; ++e) {
+    const std::array<Vec3, 8> at = corners(again, e);
+    EXPECT_GT(connections::least_corner_volume(at), 0);
+    for (std::size_t c = 0; c < 8; ++c) EXPECT_NEAR(at[c].z(), c < 4 ? 0.75 : 1.05, 1e-9) << "S1 lies on the lower part";
+  }
+  const Part& part = again.current().model.parts->at(solids(again).part[0].value);
+  EXPECT_EQ(part.name, "ADHESIVE-3");
+  EXPECT_EQ(part.id, 3);
+  EXPECT_EQ(part.density, 1.2e-9);
+  bond(document, R"({"edit": "undo"})");
+  EXPECT_EQ(saved(document), content_of(folder / "flange.inp"));
+}
+
+TEST_F(BondEdit, is_written_like_a_solid_of_an_abaqus_deck_with_its_faces_on_the_same_sheets) {
+  // The existing solid stands on its head: its first face lies on the upper sheet.
+  Document document = open_deck(folder / "flange.inp", abaqus_flange(kAbaqusBond));
+  const EditReport report = bond(document, bond_json(R"("width": 10, "length": 30)", R"("like": "solid:90001")"));
+  EXPECT_EQ(report.bonded->solids_added, 4u);
+  const std::string after = saved(document);
+  EXPECT_THAT(after, HasSubstr("   90001,  80005,  80008,  80007,  80006,  80001,  80004,  80003,  80002\n   90002,  8"));
+  EXPECT_THAT(after, HasSubstr("*ELSET, ELSET=glued\n90001\n90002, 90003, 90004, 90005\n"));
+  const Document again = open(folder / "saved.k", {}).value();
+  ASSERT_EQ(solids(again).size(), 5u);
+  for (std::size_t e = 0; e < 5; ++e) {
+    EXPECT_EQ(solids(again).part[e], solids(again).part[0]);
+    EXPECT_GT(connections::least_corner_volume(corners(again, e)), 0);
+    EXPECT_NEAR(corners(again, e)[0].z(), 1.05, 1e-9);
+  }
+  bond(document, R"({"edit": "undo"})");
+  EXPECT_EQ(saved(document), content_of(folder / "flange.inp"));
+}
+
+TEST_F(BondEdit, refuses_abaqus_decks_where_no_surface_can_hold_it) {
+  const std::string json = bond_json(R"("width": 10, "length": 8)");
+  Document instances = open_deck(folder / "parts.inp", "*PART, NAME=p\n" + abaqus_flange("", false) +
+                                                           "*END PART\n*ASSEMBLY, NAME=a\n*INSTANCE, NAME=p-1, PART=p\n*END INSTANCE\n"
+                                                           "*END ASSEMBLY\n");
+  EXPECT_THAT(refusal(instances, json), HasSubstr("the deck is made of parts and instances"));
+  put_content(folder / "history.inp", "*STEP\n*STATIC\n*END STEP\n");
+  Document history = open_deck(folder / "main.inp", abaqus_flange("", false) + "*INCLUDE, INPUT=history.inp\n");
+  EXPECT_THAT(refusal(history, json), HasSubstr("a *STEP stands in an include"));
+  // The first shell of the lower sheet has its nodes in the other order.
+  std::string text = abaqus_flange();
+  const std::string card = "1001, 1001, 1002, 1027, 1026\n";
+  ASSERT_NE(text.find(card), std::string::npos);
+  for (int shell = 1001; shell < 1001 + 96; ++shell) {
+    const std::string start = "\n" + std::to_string(shell) + ", ";
+    const std::size_t at = text.find(start, text.find("*ELEMENT"));
+    const std::size_t end = text.find('\n', at + 1);
+    std::istringstream fields(text.substr(at + 1, end - at - 1));
+    std::array<std::string, 5> field;
+    for (std::string& each : field) std::getline(fields, each, ',');
+    if (shell % 24 < 12) text.replace(at + 1, end - at - 1, field[0] + "," + field[4] + "," + field[3] + "," + field[2] + "," + field[1]);
+  }
+  Document turned = open_deck(folder / "turned.inp", text);
+  EXPECT_THAT(refusal(turned, json), HasSubstr("shells of part:1 face the adhesive with different sides"));
+  Document named = open_deck(folder / "flange.inp", abaqus_flange(kAbaqusBond + "*SURFACE, NAME=by_number\n90001, S1\n"));
+  EXPECT_THAT(refusal(named, bond_json(R"("width": 10, "length": 30)", R"("like": "solid:90001")")),
+              HasSubstr("the surface by_number names it by its number"));
 }
 
 TEST_F(BondEdit, other_formats_are_refused_by_name) {
