@@ -50,6 +50,7 @@ const std::vector<Module>& modules() {
       {"drivers/prism_servo/dynamixel", {"drivers/prism_servo", "drivers/settings"}},
       {"drivers/haptic_pen", {"base"}},
       {"drivers/haptic_pen/framed", {"drivers/haptic_pen", "drivers/port"}},
+      {"drivers/haptic_pen/falcon", {"drivers/haptic_pen", "drivers/port"}},
       {"drivers/haptics", {"drivers/haptic_pen"}},
 
       {"ipc/wire", {"base/json"}},

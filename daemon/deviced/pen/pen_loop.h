@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <variant>
 
+#include "base/ring.h"
 #include "daemon/deviced/pen/field_reader.h"
 #include "daemon/deviced/pen/guard_page.h"
-#include "daemon/deviced/realtime/ring.h"
 #include "drivers/haptic_pen/framed/framed_pen.h"
 #include "drivers/haptics/haptic_loop.h"
 #include "ipc/pen/page.h"
