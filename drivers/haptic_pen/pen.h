@@ -77,7 +77,7 @@ class HapticPen {
   // Called by the thread that opened the line, too.
   /// The line can't be used again.
   virtual bool gone() const = 0;
-  /// What the user has to know or to do until the device is ready; empty: nothing.
+  /// What the user has to know or to do until the device is ready; empty: it is ready.
   virtual std::string advice() const { return {}; }
   /// Time from the newest answered force to the pose that answers it; 0: none yet. For the loop's thread.
   virtual std::int64_t round_trip_ns() const { return 0; }

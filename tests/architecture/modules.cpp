@@ -73,7 +73,9 @@ const std::vector<Module>& modules() {
       {"daemon/modeld",
        {"ipc/import", "ipc/intake", "ipc/store", "ipc/model", "ipc/pen", "mesh/field", "daemon/common", "drivers/settings"}},
       {"daemon/deviced/realtime", {"base"}},
-      {"daemon/deviced/pen", {"ipc/pen", "daemon/common", "daemon/deviced/realtime", "drivers/haptic_pen/framed", "drivers/settings"}},
+      {"daemon/deviced/pen",
+       {"ipc/pen", "daemon/common", "daemon/deviced/realtime", "drivers/haptic_pen/falcon", "drivers/haptic_pen/framed",
+        "drivers/settings"}},
       {"daemon/deviced",
        {"ipc/device", "daemon/common", "daemon/deviced/pen", "drivers/eye_tracker/configured", "drivers/prism_servo/dynamixel"}},
 

@@ -29,8 +29,8 @@ PenStage stage_of(PenPhase device, SafetyPhase safety) {
 
 }  // namespace
 
-PenLoop::PenLoop(const drivers::haptics::HapticLimits& limits, drivers::haptic_pen::framed::FramedPen& pen, FieldReader& fields,
-                 GuardPage& guard, ipc::PenPage& page, const drivers::haptics::SafetyRecord& stored, const drivers::haptics::Feel& feel,
+PenLoop::PenLoop(const drivers::haptics::HapticLimits& limits, drivers::haptic_pen::HapticPen& pen, FieldReader& fields, GuardPage& guard,
+                 ipc::PenPage& page, const drivers::haptics::SafetyRecord& stored, const drivers::haptics::Feel& feel,
                  std::uint64_t arms_answered)
     : pen_(pen), fields_(fields), guard_(guard), page_(page), loop_(limits, pen.limits(), stored), feel_(feel), stored_(stored) {
   drivers::haptics::PenRecordLimits used{loop_.max_newton(), {}};

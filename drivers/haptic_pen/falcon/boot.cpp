@@ -11,12 +11,16 @@ namespace {
 constexpr std::int64_t kMs = 1'000'000;
 /// What an earlier program has asked may still be answered.
 constexpr std::int64_t kSettleNs = 50 * kMs;
+/// All questions are answered, also those that were asked before it ran: an answer too many would shift all that follow.
+constexpr std::int64_t kMaxDrainNs = 2000 * kMs;
 constexpr std::int64_t kAskNs = 300 * kMs, kAskAgainNs = 20 * kMs;
 /// The firmware begins within this.
 constexpr std::int64_t kStartNs = 2000 * kMs;
 constexpr std::int64_t kGreetNs = 100 * kMs;
 constexpr int kGreetings = 20;
 constexpr std::int64_t kLockNs = 1000 * kMs, kEchoNs = 1000 * kMs, kPauseNs = 500 * kMs;
+/// After the last attempt.
+constexpr std::int64_t kRestNs = 10'000 * kMs;
 /// A full-speed packet of the answer holds two bytes of status.
 constexpr std::size_t kChunk = 62;
 
@@ -28,6 +32,12 @@ constexpr std::array kLock{std::byte{'A'}};  // the loader measures the baud rat
 
 BootPhase Boot::step(std::int64_t now_ns) {
   if (!begun_) begin(now_ns);
+  if (progress_.phase.load() == BootPhase::failed && progress_.fault.load() != BootFault::needs_firmware && now_ns >= until_ns_) {
+    // Its power may have come meanwhile.
+    progress_.attempt = 1;
+    progress_.phase = BootPhase::working;
+    begin(now_ns);
+  }
   if (progress_.phase.load() != BootPhase::working) return progress_.phase.load();
   receive(now_ns);
   // Time counts from when the bus has taken everything.
@@ -100,8 +110,12 @@ void Boot::take(std::byte byte, std::int64_t now_ns) {
     case Step::settle:
     case Step::pause: return;
     case Step::ask:
-      if (const auto bytes = finder_.take(byte); bytes && decode_pose(*bytes)) progress_.phase = BootPhase::running;
+      if (const auto bytes = finder_.take(byte); bytes && decode_pose(*bytes)) {
+        enter(Step::drain, now_ns, kSettleNs);
+        drained_by_ns_ = now_ns + kMaxDrainNs;
+      }
       return;
+    case Step::drain: until_ns_ = std::min(now_ns + kSettleNs, drained_by_ns_); return;
     case Step::greet:
       matched_ = byte == kGreetingAnswer[matched_] ? matched_ + 1 : byte == kGreetingAnswer[0] ? 1 : 0;
       if (matched_ < kGreetingAnswer.size()) return;
@@ -133,6 +147,7 @@ void Boot::out_of_time(std::int64_t now_ns) {
   switch (step_) {
     case Step::settle: return enter(Step::ask, now_ns, kAskNs);
     case Step::ask: return loaded_ ? fail(BootFault::no_start, now_ns) : begin_loading(now_ns);
+    case Step::drain: progress_.phase = BootPhase::running; return;
     case Step::greet:
       if (greetings_ >= kGreetings) return fail(BootFault::no_greeting, now_ns);
       ++greetings_;
@@ -149,6 +164,7 @@ void Boot::fail(BootFault fault, std::int64_t now_ns) {
   progress_.fault = fault;
   if (fault == BootFault::needs_firmware || progress_.attempt.load() >= kBootAttempts) {
     progress_.phase = BootPhase::failed;
+    until_ns_ = now_ns + kRestNs;
     return;
   }
   progress_.attempt.fetch_add(1);

@@ -46,7 +46,7 @@ class Boot {
   const BootProgress& progress() const { return progress_; }
 
  private:
-  enum class Step : std::uint8_t { settle, ask, greet, lock, load, pause };
+  enum class Step : std::uint8_t { settle, ask, drain, greet, lock, load, pause };
 
   void enter(Step step, std::int64_t now_ns, std::int64_t patience_ns);
   void begin(std::int64_t now_ns);
@@ -65,7 +65,7 @@ class Boot {
   BootProgress progress_;
   Step step_ = Step::settle;
   bool begun_ = false, loaded_ = false;
-  std::int64_t until_ns_ = 0, again_ns_ = 0;
+  std::int64_t until_ns_ = 0, again_ns_ = 0, drained_by_ns_ = 0;
   int greetings_ = 0;
   std::size_t matched_ = 0;            ///< bytes of the greeting's answer
   std::size_t sent_ = 0, echoed_ = 0;  ///< bytes of the firmware

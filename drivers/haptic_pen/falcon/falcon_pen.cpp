@@ -11,10 +11,12 @@
 namespace prismesh::drivers::haptic_pen::falcon {
 namespace {
 
-/// So many questions may be without an answer before a force waits; a zero doesn't wait.
+/// So many questions may be without an answer before the next waits: a queue would make each pose old. A zero after a force doesn't wait.
 constexpr std::size_t kMaxAsked = 3;
 /// A question that old isn't answered any more.
 constexpr std::int64_t kAnswerNs = 20'000'000;
+/// Then nothing is asked for so long: an answer that comes after all would be taken for that of a later question.
+constexpr std::int64_t kResyncNs = 25'000'000;
 /// From a pose to the force that answers it, without the period: the chip's latency of 1 ms and two frames of the bus.
 constexpr std::int64_t kDelayNs = 1'500'000;
 /// The smallest step of an encoder at the grip, in the middle of the workspace; its maker says 400 a inch.
@@ -71,7 +73,7 @@ PenReading FalconPen::read(std::int64_t now_ns) {
   PenReading reading;
   const BootPhase boot = boot_.progress().phase.load() == BootPhase::running ? BootPhase::running : boot_.step(now_ns);
   if (boot == BootPhase::running && !answered_) {
-    // Its boot has read the first answer.
+    // Its boot has read all answers.
     answered_ = true;
     finder_.clear();
   } else if (boot == BootPhase::running) {
@@ -95,6 +97,7 @@ PenReading FalconPen::read(std::int64_t now_ns) {
     if (asked_count_ > 0 && now_ns - asked_ns_[asked_begin_] > kAnswerNs) {
       reading.lost_replies = static_cast<std::uint32_t>(asked_count_);
       asked_count_ = 0;
+      resync_until_ns_ = now_ns + kResyncNs;
     }
   }
   if (port_.last_error() != 0) gone_ = true;
@@ -143,8 +146,10 @@ void FalconPen::send(std::int64_t now_ns, const PenCommand& command) {
   if (homed && placed_) packet.motors = motor_units(command.newton);
   const bool zero = packet.motors == std::array<std::int16_t, 3>{};
   packet.lights = !homed ? kRed : zero ? kGreen : kBlue;
-  // A device that answers late gets no queue of old forces. A zero goes through.
-  if (asked_count_ == asked_ns_.size() || (asked_count_ >= kMaxAsked && !zero)) return;
+  const bool ends_force = zero && sent_force_;
+  const bool resyncs = now_ns < resync_until_ns_;
+  const bool waits = resyncs || asked_count_ >= kMaxAsked || port_.pending() >= kMaxAsked;
+  if (asked_count_ == asked_ns_.size() || (waits && !ends_force)) return;
   // A zero is never too old.
   const port::PortStatus put = port_.write(encode(packet), zero ? port::kUsbForever : command.valid_until_ns);
   if (put != port::PortStatus::ok) {
@@ -152,6 +157,8 @@ void FalconPen::send(std::int64_t now_ns, const PenCommand& command) {
     refused_ = true;
     return;
   }
+  sent_force_ = !zero;
+  if (resyncs) return;
   asked_ns_[(asked_begin_ + asked_count_++) % asked_ns_.size()] = now_ns;
 }
 
@@ -174,7 +181,8 @@ std::string FalconPen::advice() const {
     case BootPhase::running: break;
     case BootPhase::working:
       if (boot.loading) return fmt::format("the firmware is being loaded: {} %", boot.percent.load());
-      return fault.empty() ? std::string() : fmt::format("{} (attempt {} of {})", fault, boot.attempt.load(), kBootAttempts);
+      return fault.empty() ? std::string("the Falcon is being started")
+                           : fmt::format("{} (attempt {} of {})", fault, boot.attempt.load(), kBootAttempts);
   }
   const unsigned homed = homed_.load();
   if (homed == kAllHomed) return {};

@@ -56,12 +56,12 @@ class FalconPen final : public HapticPen {
   PacketFinder finder_;
   std::atomic<bool> gone_ = false;
   std::atomic<std::uint8_t> homed_ = 0;
-  bool refused_ = false, answered_ = false, placed_ = false;
+  bool refused_ = false, answered_ = false, placed_ = false, sent_force_ = false;
   GripPlace place_;
   std::uint32_t buttons_ = 0;
   std::array<std::int64_t, 8> asked_ns_{};  ///< a ring of the questions without an answer
   std::size_t asked_begin_ = 0, asked_count_ = 0;
-  std::int64_t round_trip_ns_ = 0;
+  std::int64_t round_trip_ns_ = 0, resync_until_ns_ = 0;
 };
 
 }  // namespace prismesh::drivers::haptic_pen::falcon

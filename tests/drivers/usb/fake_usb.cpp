@@ -55,7 +55,7 @@ struct FakeUsb::Bus {
     UsbDevice* device = nullptr;
     FakeUsbOptions options;
     UMockdevIoctlBase* handler = umockdev_ioctl_base_new();
-    bool plugged_in = true, claimed_by_another = false;
+    bool plugged_in = true, claimed_by_another = false, found_nothing = true;
     std::deque<Transfer> waiting, done;
     std::mutex mutex;
     std::string path() const { return fmt::format("/dev/bus/usb/001/{:03}", number); }
@@ -206,13 +206,16 @@ struct FakeUsb::Bus {
       case USBDEVFS_IOCTL: return answer(-1, ENODATA);  // there is no driver of the kernel
       case USBDEVFS_SUBMITURB: submit(device, argument); return answer(0, 0);
       case USBDEVFS_REAPURBNDELAY: {
-        for (int turn = 0; device.done.empty() && turn < kPatienceTurns && device.plugged_in; ++turn) {
+        // Only the first call after one that found nothing waits: libusb goes on as long as it finds something.
+        complete_reads(device);
+        for (int turn = 0; device.found_nothing && device.done.empty() && turn < kPatienceTurns && device.plugged_in; ++turn) {
           complete_reads(device);
           if (!device.done.empty()) break;
           lock.unlock();
           ::usleep(kTurnUs);
           lock.lock();
         }
+        device.found_nothing = device.done.empty();
         if (device.done.empty()) return answer(-1, device.plugged_in ? EAGAIN : ENODEV);
         Transfer transfer = device.done.front();
         device.done.pop_front();
