@@ -141,12 +141,18 @@ struct FakeUsb::Bus {
     }
   }
 
-  static void submit(Device& device, UMockdevIoctlData* argument) {
+  /// False: the host has ended within the call, and its memory with it.
+  static bool submit(Device& device, UMockdevIoctlData* argument) {
     Transfer transfer;
     transfer.urb = umockdev_ioctl_data_resolve(argument, 0, sizeof(usbdevfs_urb), nullptr);
+    if (transfer.urb == nullptr) return false;
     usbdevfs_urb& urb = transfer.of();
     transfer.buffer =
         umockdev_ioctl_data_resolve(transfer.urb, offsetof(usbdevfs_urb, buffer), static_cast<gsize>(urb.buffer_length), nullptr);
+    if (transfer.buffer == nullptr) {
+      drop(transfer);
+      return false;
+    }
     if (urb.type == USBDEVFS_URB_TYPE_CONTROL) {
       control(device, transfer);
       device.done.push_back(transfer);
@@ -160,6 +166,7 @@ struct FakeUsb::Bus {
       device.done.push_back(transfer);
     }
     complete_reads(device);
+    return true;
   }
 
   static gboolean handle(UMockdevIoctlBase*, UMockdevIoctlClient* client, gpointer self) {
@@ -175,6 +182,7 @@ struct FakeUsb::Bus {
     switch (request) {
       case USBDEVFS_GET_CAPABILITIES: {
         UMockdevIoctlData* data = umockdev_ioctl_data_resolve(argument, 0, sizeof(std::uint32_t), nullptr);
+        if (data == nullptr) return answer(-1, EFAULT);
         const std::uint32_t can = USBDEVFS_CAP_ZERO_PACKET | USBDEVFS_CAP_BULK_CONTINUATION | USBDEVFS_CAP_NO_PACKET_SIZE_LIM |
                                   USBDEVFS_CAP_BULK_SCATTER_GATHER | USBDEVFS_CAP_REAP_AFTER_DISCONNECT;
         std::memcpy(data->data, &can, sizeof can);
@@ -183,6 +191,7 @@ struct FakeUsb::Bus {
       }
       case USBDEVFS_CONNECTINFO: {
         UMockdevIoctlData* data = umockdev_ioctl_data_resolve(argument, 0, sizeof(usbdevfs_connectinfo), nullptr);
+        if (data == nullptr) return answer(-1, EFAULT);
         const usbdevfs_connectinfo info{static_cast<unsigned>(device.number), 0};
         std::memcpy(data->data, &info, sizeof info);
         umockdev_ioctl_data_unref(data);
@@ -190,10 +199,12 @@ struct FakeUsb::Bus {
       }
       case USBDEVFS_CONTROL: {  // which configuration is active
         UMockdevIoctlData* data = umockdev_ioctl_data_resolve(argument, 0, sizeof(usbdevfs_ctrltransfer), nullptr);
+        if (data == nullptr) return answer(-1, EFAULT);
         const auto& asked = *reinterpret_cast<const usbdevfs_ctrltransfer*>(data->data);
         const bool known = asked.bRequestType == 0x80 && asked.bRequest == 8 && asked.wLength == 1;
         if (known) {
           UMockdevIoctlData* to = umockdev_ioctl_data_resolve(data, offsetof(usbdevfs_ctrltransfer, data), 1, nullptr);
+          if (to == nullptr) return answer(-1, EFAULT);
           to->data[0] = 1;
           umockdev_ioctl_data_unref(to);
         }
@@ -204,7 +215,7 @@ struct FakeUsb::Bus {
       case USBDEVFS_DISCONNECT_CLAIM: return device.claimed_by_another ? answer(-1, EBUSY) : answer(0, 0);
       case USBDEVFS_RELEASEINTERFACE: return answer(0, 0);
       case USBDEVFS_IOCTL: return answer(-1, ENODATA);  // there is no driver of the kernel
-      case USBDEVFS_SUBMITURB: submit(device, argument); return answer(0, 0);
+      case USBDEVFS_SUBMITURB: return submit(device, argument) ? answer(0, 0) : answer(-1, EFAULT);
       case USBDEVFS_REAPURBNDELAY: {
         // Only the first call after one that found nothing waits: libusb goes on as long as it finds something.
         complete_reads(device);
@@ -220,6 +231,7 @@ struct FakeUsb::Bus {
         Transfer transfer = device.done.front();
         device.done.pop_front();
         UMockdevIoctlData* to = umockdev_ioctl_data_resolve(argument, 0, sizeof(gpointer), nullptr);
+        if (to == nullptr) return answer(-1, EFAULT);
         umockdev_ioctl_data_set_ptr(to, 0, transfer.urb);
         answer(0, 0);
         umockdev_ioctl_data_unref(to);
