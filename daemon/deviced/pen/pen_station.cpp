@@ -21,6 +21,8 @@ using drivers::haptics::SafetyPhase;
 using drivers::haptics::SafetyRecord;
 
 constexpr std::int64_t kTryAgainNs = 250'000'000;
+/// Looking through all USB devices takes five milliseconds; plugs are seen at once.
+constexpr std::int64_t kLookAgainNs = 1'000'000'000;
 /// Far longer than what latches: the line is then opened anew.
 constexpr std::int64_t kMaxSilenceOfPenNs = 1'000'000'000;
 
@@ -97,7 +99,7 @@ void PenStation::poll() {
 }
 
 void PenStation::open_line() {
-  next_try_ns_ = clock_.now_ns() + kTryAgainNs;
+  next_try_ns_ = clock_.now_ns() + (settings_.driver == drivers::settings::PenDriver::falcon ? kLookAgainNs : kTryAgainNs);
   Result<std::unique_ptr<OpenPen>> opened = open_pen(settings_, port_, guard_.page());
   if (!opened) {
     if (std::exchange(trouble_, opened.error().text()) != trouble_) logging::warn("{}", trouble_);
