@@ -48,6 +48,7 @@ class SimulatedFalcon final : public port::UsbDevice {
 
   // Faults: each holds until it is taken back.
   void lose_power();  ///< forgets firmware and homing
+  void lose_homing() { homed_ = 0; }
   void damage_echo(std::size_t at) { damaged_echo_ = at; }
   void be_deaf(bool deaf) { deaf_ = deaf; }
   void answer_late_by(std::int64_t ns) { late_ns_ = ns; }

@@ -219,6 +219,50 @@ TEST(FalconPenTest, answers_to_nobodys_question_are_left) {
   }
 }
 
+TEST(FalconPenTest, an_answer_without_a_question_is_no_pose) {
+  FalconRig rig({.runs = true, .homed = true}, {}, circling);
+  ASSERT_TRUE(rig.until(PenPhase::ready));
+  const auto quiet_tick = [&] {
+    rig.clock.advance_ns(kTickNs);
+    return rig.pen.read(rig.clock.now_ns());
+  };
+  for (int i = 0; i < 10; ++i) (void)quiet_tick();
+  rig.device.inject(rig.clock.now_ns(), encode(PosePacket{.encoders = {-500, -500, -500}, .homed = kAllHomed}));
+  for (int i = 0; i < 10; ++i) {
+    const PenReading reading = quiet_tick();
+    EXPECT_FALSE(reading.fresh);
+    EXPECT_EQ(reading.replies, 0u);
+  }
+}
+
+TEST(FalconPenTest, answers_of_its_start_are_not_taken_for_later_ones) {
+  FalconRig rig({.runs = true, .homed = true}, {}, circling);
+  rig.device.answer_late_by(100'000'000);
+  while (rig.tick().phase == PenPhase::setting_up)
+    if (rig.seen.size() > 3) rig.device.answer_late_by(0);
+  const std::size_t asked_by_start = rig.seen.size();
+  EXPECT_GT(asked_by_start, 3u);
+  const std::uint32_t before = rig.replies;
+  for (int i = 0; i < 300; ++i) {
+    rig.tick();
+    ASSERT_LE(rig.replies - before, rig.seen.size() - asked_by_start);
+  }
+  EXPECT_GT(rig.replies, before + 250);
+  EXPECT_EQ(rig.lost, 0u);
+}
+
+TEST(FalconPenTest, losing_its_marks_takes_its_forces) {
+  FalconRig rig({.runs = true, .homed = true}, {}, [](double) { return SimulatedHand{}; });
+  ASSERT_TRUE(rig.until(PenPhase::ready));
+  for (int i = 0; i < 20; ++i) rig.tick({0.1, 0, 0});
+  EXPECT_NE(rig.seen.back().motors, (std::array<std::int16_t, 3>{}));
+  rig.device.lose_homing();
+  for (int i = 0; i < 5; ++i) rig.tick({0.1, 0, 0});
+  EXPECT_EQ(rig.tick({0.1, 0, 0}).phase, PenPhase::homing);
+  EXPECT_EQ(rig.seen.back().motors, (std::array<std::int16_t, 3>{}));
+  EXPECT_EQ(rig.seen.back().lights, kRed);
+}
+
 TEST(FalconPenTest, lost_answers_are_counted_and_it_goes_on) {
   FalconRig rig({.runs = true, .homed = true}, {}, circling);
   ASSERT_TRUE(rig.until(PenPhase::ready));
