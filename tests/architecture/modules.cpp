@@ -52,6 +52,7 @@ const std::vector<Module>& modules() {
       {"drivers/haptic_pen/framed", {"drivers/haptic_pen", "drivers/port"}},
       {"drivers/haptic_pen/falcon", {"drivers/haptic_pen", "drivers/port"}},
       {"drivers/haptics", {"drivers/haptic_pen"}},
+      {"drivers/space_mouse", {"base"}},
 
       {"ipc/wire", {"base/json"}},
       {"ipc/device", {"ipc/wire", "drivers/prism_servo"}},
