@@ -1,5 +1,7 @@
 #include <fcntl.h>
 #include <poll.h>
+#include <pthread.h>
+#include <sched.h>
 #include <sys/eventfd.h>
 #include <unistd.h>
 
@@ -174,8 +176,12 @@ struct Packet {
 
 class LibusbPort final : public UsbPort {
  public:
-  LibusbPort(std::unique_ptr<OpenDevice> device, const UsbWanted& wanted, UsbGate gate)
-      : device_(std::move(device)), out_endpoint_(wanted.out_endpoint), in_endpoint_(wanted.in_endpoint), gate_(std::move(gate)) {}
+  LibusbPort(std::unique_ptr<OpenDevice> device, const UsbWanted& wanted, UsbGate gate, int realtime_priority)
+      : device_(std::move(device)),
+        out_endpoint_(wanted.out_endpoint),
+        in_endpoint_(wanted.in_endpoint),
+        gate_(std::move(gate)),
+        realtime_priority_(realtime_priority) {}
 
   /// False: no descriptor or memory is left.
   bool start() {
@@ -234,6 +240,7 @@ class LibusbPort final : public UsbPort {
   }
 
   std::size_t pending() const override { return pending_.load(std::memory_order_acquire); }
+  std::uint64_t finished() const override { return finished_.load(std::memory_order_acquire); }
   int last_error() const override { return last_error_.load(std::memory_order_acquire); }
   int descriptor() const override { return device_->descriptor(); }
 
@@ -272,6 +279,12 @@ class LibusbPort final : public UsbPort {
   // --- called by the I/O thread ---
 
   void run(const std::stop_token& stop) {
+    ::pthread_setname_np(::pthread_self(), "usb i/o");
+    if (realtime_priority_ > 0) {
+      sched_param priority{};
+      priority.sched_priority = realtime_priority_;
+      ::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &priority);  // where it isn't granted, it does without
+    }
     for (Reading& reading : readings_) begin_reading(reading);
     std::int64_t drained_by_ns = 0;
     for (;;) {
@@ -376,7 +389,10 @@ class LibusbPort final : public UsbPort {
                                                                    : EIO);
   }
 
-  void finish() { pending_.fetch_sub(1, std::memory_order_acq_rel); }
+  void finish() {
+    finished_.fetch_add(1, std::memory_order_acq_rel);
+    pending_.fetch_sub(1, std::memory_order_acq_rel);
+  }
 
   void fail_with(int error) {
     int none = 0;
@@ -401,11 +417,13 @@ class LibusbPort final : public UsbPort {
   std::unique_ptr<OpenDevice> device_;
   std::uint8_t out_endpoint_, in_endpoint_;
   UsbGate gate_;
+  int realtime_priority_;
   MonotonicClock clock_;
   int wake_ = -1;
   Ring<Packet, kUsbPackets> waiting_;
   Ring<Packet, 64> arrived_;
   std::atomic<std::size_t> pending_ = 0;
+  std::atomic<std::uint64_t> finished_ = 0;
   std::atomic<int> last_error_ = 0;
   std::array<Reading, kReadsAhead> readings_;
   Sending sending_;
@@ -460,10 +478,10 @@ class LibusbWatch final : public UsbWatch {
 
 }  // namespace
 
-Result<std::unique_ptr<UsbPort>> open_usb_port(const UsbWanted& wanted, UsbGate gate) {
+Result<std::unique_ptr<UsbPort>> open_usb_port(const UsbWanted& wanted, UsbGate gate, int realtime_priority) {
   Result<std::unique_ptr<OpenDevice>> device = OpenDevice::open(wanted);
   if (!device) return fail(std::move(device.error()));
-  auto port = std::make_unique<LibusbPort>(std::move(*device), wanted, std::move(gate));
+  auto port = std::make_unique<LibusbPort>(std::move(*device), wanted, std::move(gate), realtime_priority);
   if (!port->start()) return fail(wanted.name, "no memory or descriptor is left for it");
   return port;
 }

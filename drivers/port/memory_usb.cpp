@@ -37,6 +37,7 @@ class MemoryUsb::Port final : public UsbPort {
   }
 
   std::size_t pending() const override { return gone() ? 0 : cable_.to_device_.count; }
+  std::uint64_t finished() const override { return cable_.finished_; }
   int last_error() const override { return gone() ? ENODEV : 0; }
 
  private:
@@ -82,6 +83,7 @@ void MemoryUsb::run() {
       }
     }
     to_device_.drop();
+    ++finished_;
   }
   while (plugged_in_ && !hold_to_host_ && !to_host_.full()) {
     Sent packet;

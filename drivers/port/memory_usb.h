@@ -67,6 +67,7 @@ class MemoryUsb {
   bool plugged_in_ = true, hold_to_host_ = false, hold_to_device_ = false, refused_ = false;
   std::uint64_t generation_ = 0;
   std::optional<std::size_t> bytes_left_;
+  std::uint64_t finished_ = 0;
   Queue<kUsbPackets> to_device_, to_host_;
 };
 

@@ -44,6 +44,8 @@ class UsbPort {
   virtual PortStatus control(const UsbControl& request) = 0;
   /// Packets and requests that wait, or that the bus hasn't finished.
   virtual std::size_t pending() const = 0;
+  /// How many were finished since the port was opened, dropped ones included.
+  virtual std::uint64_t finished() const = 0;
   /// Returns the errno that made the port `gone`; 0: it isn't gone.
   virtual int last_error() const = 0;
   /// Returns the descriptor of the device with its claimed interface, for a process that keeps a duplicate; -1: there is none.
@@ -70,7 +72,8 @@ struct UsbGate {
 /// Opens the one device of this kind through libusb and discards what it had queued. Its I/O thread runs until the port is destroyed, which
 /// first sends what waits (for at most 100 ms). Errors, each a sentence: no such device, two of them, another model with the same numbers,
 /// no permission (names the udev rule), another program has it, it doesn't answer.
-Result<std::unique_ptr<UsbPort>> open_usb_port(const UsbWanted& wanted, UsbGate gate = {});
+/// `realtime_priority`: of the I/O thread, where the system grants it; 0: an ordinary one.
+Result<std::unique_ptr<UsbPort>> open_usb_port(const UsbWanted& wanted, UsbGate gate = {}, int realtime_priority = 0);
 
 /// Watches on a context and a thread of its own for devices that come and go. Where the system reports none (a container, a network
 /// namespace), the counts stay 0: callers must also try from time to time.

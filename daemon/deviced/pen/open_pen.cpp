@@ -17,6 +17,8 @@ using drivers::settings::HapticPenSettings;
 using drivers::settings::PenDriver;
 
 constexpr int kFramedBaud = 115'200;
+/// Above the loop's, whose packets it carries; below the guard's.
+constexpr int kUsbPriority = 42;
 
 class OpenFramedPen final : public OpenPen {
  public:
@@ -55,7 +57,8 @@ Result<std::unique_ptr<OpenPen>> open_falcon(const HapticPenSettings& settings, 
     if (!firmware) return fail(std::move(firmware.error()));
     options.firmware = std::move(firmware->bytes);
   }
-  Result<std::unique_ptr<drivers::port::UsbPort>> line = drivers::port::open_usb_port(falcon::falcon_wanted(), usb_gate(page));
+  Result<std::unique_ptr<drivers::port::UsbPort>> line =
+      drivers::port::open_usb_port(falcon::falcon_wanted(), usb_gate(page), kUsbPriority);
   if (!line) return fail(std::move(line.error()));
   return std::make_unique<OpenFalcon>(std::move(*line), std::move(options));
 }

@@ -16,6 +16,7 @@ constexpr std::size_t kMaxAsked = 3;
 /// A question that old isn't answered any more.
 constexpr std::int64_t kAnswerNs = 20'000'000;
 /// Then nothing is asked for so long: an answer that comes after all would be taken for that of a later question.
+constexpr std::int64_t kStuckNs = 10'000'000;
 constexpr std::int64_t kResyncNs = 25'000'000;
 /// From a pose to the force that answers it, without the period: the chip's latency of 1 ms and two frames of the bus.
 constexpr std::int64_t kDelayNs = 1'500'000;
@@ -171,6 +172,14 @@ std::array<std::int16_t, 3> FalconPen::motor_units(const Eigen::Vector3d& newton
   std::array<std::int16_t, 3> motors{};
   for (std::size_t arm = 0; arm < 3; ++arm) motors[arm] = static_cast<std::int16_t>(std::trunc(units[static_cast<Eigen::Index>(arm)]));
   return motors;
+}
+
+bool FalconPen::is_stuck(std::int64_t now_ns) {
+  // While it boots a request may take long.
+  const std::uint64_t finished = port_.finished();
+  if (!answered_ || port_.pending() == 0 || finished != finished_) moved_ns_ = now_ns;
+  finished_ = finished;
+  return now_ns - moved_ns_ > kStuckNs;
 }
 
 std::string FalconPen::advice() const {

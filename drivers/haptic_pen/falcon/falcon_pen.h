@@ -42,6 +42,8 @@ class FalconPen final : public HapticPen {
   void send(std::int64_t now_ns, const PenCommand& command) override;
   const PenLimits& limits() const override { return limits_; }
   bool gone() const override { return gone_; }
+  /// The bus has finished nothing for 10 ms, and something waits.
+  bool is_stuck(std::int64_t now_ns) override;
   std::string advice() const override;
   std::int64_t round_trip_ns() const override { return round_trip_ns_; }
 
@@ -61,6 +63,8 @@ class FalconPen final : public HapticPen {
   std::uint32_t buttons_ = 0;
   std::array<std::int64_t, 8> asked_ns_{};  ///< a ring of the questions without an answer
   std::size_t asked_begin_ = 0, asked_count_ = 0;
+  std::uint64_t finished_ = 0;
+  std::int64_t moved_ns_ = 0;  ///< when the bus has last finished something, or had nothing to do
   std::int64_t round_trip_ns_ = 0, resync_until_ns_ = 0;
 };
 

@@ -263,6 +263,23 @@ TEST(FalconPenTest, losing_its_marks_takes_its_forces) {
   EXPECT_EQ(rig.seen.back().lights, kRed);
 }
 
+TEST(FalconPenTest, a_bus_that_takes_nothing_is_stuck_until_it_does) {
+  FalconRig rig;
+  while (rig.tick().phase != PenPhase::ready) ASSERT_FALSE(rig.pen.is_stuck(rig.clock.now_ns()));
+  for (int i = 0; i < 100; ++i) {
+    rig.tick({1, 0, 0});
+    ASSERT_FALSE(rig.pen.is_stuck(rig.clock.now_ns()));
+  }
+  rig.cable.hold(false, true);
+  int ticks = 0;
+  for (; ticks < 100 && !rig.pen.is_stuck(rig.clock.now_ns()); ++ticks) rig.tick({1, 0, 0});
+  EXPECT_GT(ticks, 9);
+  EXPECT_LT(ticks, 14);
+  rig.cable.hold(false, false);
+  rig.tick(), rig.tick();
+  EXPECT_FALSE(rig.pen.is_stuck(rig.clock.now_ns()));
+}
+
 TEST(FalconPenTest, lost_answers_are_counted_and_it_goes_on) {
   FalconRig rig({.runs = true, .homed = true}, {}, circling);
   ASSERT_TRUE(rig.until(PenPhase::ready));

@@ -24,6 +24,7 @@ class PromptPort final : public port::UsbPort {
   }
   port::PortStatus control(const port::UsbControl&) override { return port::PortStatus::ok; }
   std::size_t pending() const override { return 0; }
+  std::uint64_t finished() const override { return 0; }
   int last_error() const override { return 0; }
 
  private:

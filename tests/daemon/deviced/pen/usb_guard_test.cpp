@@ -71,6 +71,7 @@ class StandInPort final : public drivers::port::UsbPort {
   drivers::port::PortStatus write(std::span<const std::byte>, std::int64_t) override { return drivers::port::PortStatus::ok; }
   drivers::port::PortStatus control(const drivers::port::UsbControl&) override { return drivers::port::PortStatus::ok; }
   std::size_t pending() const override { return 0; }
+  std::uint64_t finished() const override { return 0; }
   int last_error() const override { return 0; }
   int descriptor() const override { return descriptor_; }
 
