@@ -7,7 +7,7 @@
 #include <optional>
 #include <variant>
 
-#include "daemon/deviced/realtime/ring.h"
+#include "base/ring.h"
 #include "drivers/display/optics.h"
 #include "drivers/eye_tracker/configured/tracker.h"
 #include "drivers/eye_tracker/filter.h"

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -72,6 +73,16 @@ class HapticPen {
   /// Sends a force and asks for the next pose. A refusal is reported by the next `read`.
   virtual void send(std::int64_t now_ns, const PenCommand& command) = 0;
   virtual const PenLimits& limits() const = 0;
+
+  // Called by the thread that opened the line, too.
+  /// The line can't be used again.
+  virtual bool gone() const = 0;
+  /// The line takes nothing any more, though it isn't gone: whoever guards it has to send the zero. For the loop's thread.
+  virtual bool is_stuck(std::int64_t /*now_ns*/) { return false; }
+  /// What the user has to know or to do until the device is ready; empty: it is ready.
+  virtual std::string advice() const { return {}; }
+  /// Time from the newest answered force to the pose that answers it; 0: none yet. For the loop's thread.
+  virtual std::int64_t round_trip_ns() const { return 0; }
 };
 
 }  // namespace prismesh::drivers::haptic_pen

@@ -45,6 +45,7 @@ class SimulatedPen final : public HapticPen {
   PenReading read(std::int64_t now_ns) override;
   void send(std::int64_t now_ns, const PenCommand& command) override;
   const PenLimits& limits() const override { return limits_; }
+  bool gone() const override { return unplugged_; }
 
   // Faults: each holds until it is taken back.
   void unplug(bool unplugged) { unplugged_ = unplugged; }

@@ -99,6 +99,26 @@ std::string advice(const std::string& path, int error) {
 
 Error open_error(const std::string& path, int error) { return {path, 0, advice(path, error)}; }
 
+Error usb_open_error(const std::string& name, const std::string& path, int error) {
+  const auto says = [&](const std::string& sentence) { return Error{name + " (" + path + ")", 0, sentence}; };
+  switch (error) {
+    case ENOENT:
+    case ENODEV:
+    case ENXIO: return says("was unplugged while it was opened");
+    case EACCES:
+      return says("this user may not open it: install systemd/udev/60-prismesh.rules, whose line for the " + name +
+                  " opens it to the group prismesh and to the user at the station, and plug the device in again");
+    case EPERM: return says("systemd keeps it from the program's unit: allow it there (DeviceAllow=char-usb_device rw)");
+    case EBUSY: {
+      const std::string who = holders(path);
+      return says("another program uses it" + (who.empty() ? std::string() : ": " + who) + "; end that program");
+    }
+    case EIO:
+    case ETIMEDOUT: return says("doesn't answer; pull its plugs and put them in again");
+    default: return says(std::string("can't be opened: ") + std::strerror(error));
+  }
+}
+
 int lock(int descriptor) {
   if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0) return 0;
   return errno == EWOULDBLOCK ? EBUSY : errno;

@@ -9,6 +9,8 @@ namespace prismesh::drivers::port {
 
 /// Returns the error for `path`. `error` is the errno after opening or locking it.
 Error open_error(const std::string& path, int error);
+/// The same for a USB device that is driven from user space. `name`: as the user calls it.
+Error usb_open_error(const std::string& name, const std::string& path, int error);
 
 /// Locks the terminal for this opener with an advisory lock (flock), which every opener in this project asks for. Returns 0 or an errno:
 /// EBUSY if another opener holds the lock.

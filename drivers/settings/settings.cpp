@@ -282,10 +282,13 @@ Section servo_section(PrismServoSettings& servo, DeviceLines& places, const std:
 
 Section pen_section(HapticPenSettings& pen, const fs::path& folder) {
   return {"haptic_pen",
-          {choice("driver", {"none", "simulated"}, [&pen](std::size_t i) { pen.driver = PenDriver(i); }), device_file("port", pen.port),
-           file_beside("hand_script", pen.hand_script, folder), number("max_newton", pen.max_newton, 0.1, 8, " N"),
-           number("stiffness_newton_m", pen.stiffness_newton_m, 0, 5000, " N/m"), number("friction", pen.friction, 0, 1, ""),
-           number("damping_newton_s_m", pen.damping_newton_s_m, 0, 5, " N s/m"),
+          {choice("driver", {"none", "simulated", "falcon"}, [&pen](std::size_t i) { pen.driver = PenDriver(i); }),
+           device_file("port", pen.port), file_beside("hand_script", pen.hand_script, folder),
+           number("max_newton", pen.max_newton, 0.1, 8, " N"), number("stiffness_newton_m", pen.stiffness_newton_m, 0, 5000, " N/m"),
+           number("friction", pen.friction, 0, 1, ""), number("damping_newton_s_m", pen.damping_newton_s_m, 0, 5, " N s/m"),
+           file_beside("firmware", pen.firmware, folder), number("force_scale", pen.force_scale, 0.2, 5, ""),
+           number("own_damping_newton_s_m", pen.own_damping_newton_s_m, 0, 10, " N s/m"),
+           number("own_friction_newton", pen.own_friction_newton, 0, 2, " N"),
            number("workspace_scale", pen.workspace_scale, 0.0001, 10000, " mm per length unit"),
            choice("hand", {"right", "left"}, [&pen](std::size_t i) { pen.left_handed = i == 1; })}};
 }

@@ -19,7 +19,7 @@ namespace prismesh::drivers::settings {
 enum class TrackerDriver : std::uint8_t { none, dynasight, opentrack };
 enum class TrackerDialect : std::uint8_t { dynasight, d4d };  ///< the command that starts streaming: `V` or `0`
 enum class ServoDriver : std::uint8_t { none, dynamixel };
-enum class PenDriver : std::uint8_t { none, simulated };
+enum class PenDriver : std::uint8_t { none, simulated, falcon };
 
 struct EyeTrackerSettings {
   TrackerDriver driver = TrackerDriver::none;
@@ -60,6 +60,10 @@ struct HapticPenSettings {
   double stiffness_newton_m = 600;  ///< of contact; the loop lowers it to what the device allows
   double friction = 0.2;            ///< Coulomb's coefficient on shells
   double damping_newton_s_m = 0.3;
+  std::string firmware;                 ///< of a Falcon: its file
+  double force_scale = 1;               ///< true newtons of the device for one that was asked for, from weighing
+  double own_damping_newton_s_m = 0.5;  ///< of the device itself; with its friction it bounds the stiffness
+  double own_friction_newton = 0.1;
   /// What the simulated hand does: a file of a HandScript; empty: it wanders about.
   std::string hand_script;
   double workspace_scale = 1;  ///< millimetres of the pen's motion for one of the model's length unit

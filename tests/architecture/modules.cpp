@@ -50,7 +50,9 @@ const std::vector<Module>& modules() {
       {"drivers/prism_servo/dynamixel", {"drivers/prism_servo", "drivers/settings"}},
       {"drivers/haptic_pen", {"base"}},
       {"drivers/haptic_pen/framed", {"drivers/haptic_pen", "drivers/port"}},
+      {"drivers/haptic_pen/falcon", {"drivers/haptic_pen", "drivers/port"}},
       {"drivers/haptics", {"drivers/haptic_pen"}},
+      {"drivers/space_mouse", {"base"}},
 
       {"ipc/wire", {"base/json"}},
       {"ipc/device", {"ipc/wire", "drivers/prism_servo"}},
@@ -72,7 +74,9 @@ const std::vector<Module>& modules() {
       {"daemon/modeld",
        {"ipc/import", "ipc/intake", "ipc/store", "ipc/model", "ipc/pen", "mesh/field", "daemon/common", "drivers/settings"}},
       {"daemon/deviced/realtime", {"base"}},
-      {"daemon/deviced/pen", {"ipc/pen", "daemon/common", "daemon/deviced/realtime", "drivers/haptic_pen/framed", "drivers/settings"}},
+      {"daemon/deviced/pen",
+       {"ipc/pen", "daemon/common", "daemon/deviced/realtime", "drivers/haptic_pen/falcon", "drivers/haptic_pen/framed",
+        "drivers/settings"}},
       {"daemon/deviced",
        {"ipc/device", "daemon/common", "daemon/deviced/pen", "drivers/eye_tracker/configured", "drivers/prism_servo/dynamixel"}},
 

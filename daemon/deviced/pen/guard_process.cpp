@@ -1,9 +1,11 @@
 #include "daemon/deviced/pen/guard_process.h"
 
 #include <fcntl.h>
+#include <linux/usbdevice_fs.h>
 #include <poll.h>
 #include <sched.h>
 #include <signal.h>
+#include <sys/ioctl.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/socket.h>
@@ -32,6 +34,8 @@ constexpr std::int64_t kLookNs = 1'000'000;
 /// A line that waits for the next process gets a zero frame so often.
 constexpr std::int64_t kKeepNs = 20'000'000;
 constexpr int kLastZeros = 5;
+/// A USB device takes a packet within this, or never.
+constexpr unsigned kUsbPatienceMs = 20;
 
 volatile sig_atomic_t told_to_end = 0;
 void note_end(int) { told_to_end = 1; }
@@ -85,9 +89,9 @@ class Guard {
 
   /// False if nothing has come.
   bool take_word() {
-    char word = 0;
+    GuardMessage told;
     alignas(cmsghdr) char control[CMSG_SPACE(sizeof(int))];
-    iovec part{&word, 1};
+    iovec part{&told, sizeof told};
     msghdr message{};
     message.msg_iov = &part;
     message.msg_iovlen = 1;
@@ -100,12 +104,14 @@ class Guard {
       write_zero();
       return false;
     }
-    if (word == static_cast<char>(GuardWord::end)) end();
+    if (got != sizeof told) return true;
+    if (told.word == GuardWord::end) end();
     write_zero();  // the last word on a line is a zero, whatever the loop has sent
     drop_line();
     const cmsghdr* header = CMSG_FIRSTHDR(&message);
-    if (word != static_cast<char>(GuardWord::line) || header == nullptr || header->cmsg_type != SCM_RIGHTS) return true;
+    if (header == nullptr || header->cmsg_type != SCM_RIGHTS) return true;
     std::memcpy(&line_, CMSG_DATA(header), sizeof line_);
+    usb_ = told;
     page_.holds_line = 1;
     changed_ns_ = now_ns();
     return true;
@@ -147,15 +153,27 @@ class Guard {
 
   void write_zero() {
     if (line_ < 0) return;
+    wrote_ns_ = now_ns();
+    if (usb_.word == GuardWord::usb) return write_usb_zero();
     ForceFrame zero;
     zero.number = ++number_;
     zero.valid_ms = 1000;
     zero.sender = Sender::guard;
     const FrameBytes bytes = drivers::haptic_pen::framed::encode(zero);
-    wrote_ns_ = now_ns();
     const ssize_t put = ::write(line_, bytes.data(), bytes.size());
     if (put == static_cast<ssize_t>(bytes.size())) page_.zeros.fetch_add(1);
     if (put < 0 && errno != EAGAIN && errno != EINTR) drop_line();
+  }
+
+  void write_usb_zero() {
+    usbdevfs_bulktransfer bulk{};
+    bulk.ep = usb_.endpoint;
+    bulk.len = usb_.zero_bytes;
+    bulk.timeout = kUsbPatienceMs;
+    bulk.data = usb_.zero.data();
+    const int put = ::ioctl(line_, USBDEVFS_BULK, &bulk);
+    if (put == static_cast<int>(bulk.len)) page_.zeros.fetch_add(1);
+    if (put < 0 && errno != ETIMEDOUT && errno != EINTR) drop_line();
   }
 
   void drop_line() {
@@ -176,6 +194,7 @@ class Guard {
   std::uint64_t beats_ = 0;
   std::int64_t changed_ns_ = 0, orphan_since_ns_ = 0, wrote_ns_ = 0;
   std::uint8_t number_ = 0;
+  GuardMessage usb_;  ///< how the line was given
 };
 
 }  // namespace

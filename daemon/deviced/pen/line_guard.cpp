@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
@@ -49,9 +50,8 @@ Result<void> end_earlier(int lock) {
   return fail("the pen's guard", "that of an earlier process (" + std::to_string(holder(lock)) + ") holds the line and doesn't end");
 }
 
-bool say(int socket, GuardWord word, int line = -1) {
-  char byte = static_cast<char>(word);
-  iovec part{&byte, 1};
+bool say(int socket, GuardMessage told, int line = -1) {
+  iovec part{&told, sizeof told};
   msghdr message{};
   message.msg_iov = &part;
   message.msg_iovlen = 1;
@@ -65,7 +65,7 @@ bool say(int socket, GuardWord word, int line = -1) {
     header->cmsg_len = CMSG_LEN(sizeof(int));
     std::memcpy(CMSG_DATA(header), &line, sizeof line);
   }
-  return ::sendmsg(socket, &message, MSG_NOSIGNAL | MSG_DONTWAIT) == 1;
+  return ::sendmsg(socket, &message, MSG_NOSIGNAL | MSG_DONTWAIT) == sizeof told;
 }
 
 }  // namespace
@@ -102,21 +102,33 @@ LineGuard::LineGuard(LineGuard&& other) noexcept
 
 LineGuard::~LineGuard() {
   if (process_ <= 0) return;
-  say(socket_.get(), GuardWord::end);
+  say(socket_.get(), {.word = GuardWord::end});
   ::waitpid(process_, nullptr, 0);
 }
 
 Result<void> LineGuard::watch(const drivers::port::BytePort& line) {
   if (line.descriptor() < 0) return fail("the pen's guard", "this line has no descriptor that could be duplicated");
-  if (!say(socket_.get(), GuardWord::line, line.descriptor())) return failed("it can't be told");
+  if (!say(socket_.get(), {.word = GuardWord::line}, line.descriptor())) return failed("it can't be told");
   return {};
 }
 
-void LineGuard::release() { say(socket_.get(), GuardWord::release); }
+Result<void> LineGuard::watch(const drivers::port::UsbPort& line, std::uint8_t endpoint, std::span<const std::byte> zero) {
+  if (line.descriptor() < 0) return fail("the pen's guard", "this device has no descriptor that could be duplicated");
+  GuardMessage told{.word = GuardWord::usb, .endpoint = endpoint, .zero_bytes = static_cast<std::uint8_t>(zero.size()), .zero = {}};
+  std::copy(zero.begin(), zero.end(), told.zero.begin());
+  if (!say(socket_.get(), told, line.descriptor())) return failed("it can't be told");
+  return {};
+}
+
+void LineGuard::release() { say(socket_.get(), {.word = GuardWord::release}); }
 
 bool LineGuard::is_alive() {
   if (process_ > 0 && ::waitpid(process_, nullptr, WNOHANG) == process_) process_ = -1;
   return process_ > 0;
+}
+
+drivers::port::UsbGate usb_gate(GuardPage& page) {
+  return {[&page] { return page.begin_writing(); }, [&page] { page.end_writing(); }};
 }
 
 drivers::port::PortCount GuardedPort::write(std::span<const std::byte> from) {

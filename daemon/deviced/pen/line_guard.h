@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "daemon/deviced/pen/guard_page.h"
 #include "drivers/port/byte_port.h"
+#include "drivers/port/usb_port.h"
 #include "ipc/wire/descriptor.h"
 
 namespace prismesh::deviced::pen {
@@ -25,6 +26,8 @@ class LineGuard {
   GuardPage& page() { return *page_; }
   /// Errors: the line has no descriptor, the guard is gone.
   Result<void> watch(const drivers::port::BytePort& line);
+  /// The same for a USB device, which is told `zero` at this endpoint.
+  Result<void> watch(const drivers::port::UsbPort& line, std::uint8_t endpoint, std::span<const std::byte> zero);
   void release();
   /// False once the guard has ended: then nobody guards the line.
   bool is_alive();
@@ -54,5 +57,8 @@ class GuardedPort final : public drivers::port::BytePort {
   drivers::port::BytePort& line_;
   GuardPage& page_;
 };
+
+/// The same for a USB device: its I/O thread takes the token for each packet. `page` must outlive the port.
+drivers::port::UsbGate usb_gate(GuardPage& page);
 
 }  // namespace prismesh::deviced::pen

@@ -112,8 +112,8 @@ struct PenDaemon::Impl final : daemon::Service<PenProtocol> {
     const ipc::PenState state = page.state();
     info.state = name(state.stage);
     if (!has_pen()) return info;
-    info.kind = "simulated";
-    info.simulated = true;
+    info.simulated = settings.driver == drivers::settings::PenDriver::simulated;
+    info.kind = info.simulated ? "simulated" : "falcon";
     info.where = station->where();
     info.trouble = station->trouble();
     if (info.trouble.empty() && state.stage == ipc::PenStage::latched) info.trouble = fault_sentence(state.fault);

@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <variant>
 
+#include "base/ring.h"
 #include "daemon/deviced/pen/field_reader.h"
 #include "daemon/deviced/pen/guard_page.h"
-#include "daemon/deviced/realtime/ring.h"
-#include "drivers/haptic_pen/framed/framed_pen.h"
+#include "drivers/haptic_pen/pen.h"
 #include "drivers/haptics/haptic_loop.h"
 #include "ipc/pen/page.h"
 
@@ -25,7 +25,7 @@ using PenCommandOfMain = std::variant<RequestArm, RequestDisarm, UseFeel>;
 class PenLoop {
  public:
   /// All must outlive the loop. `stored`: see SafetyRecord. `arms_answered`: of the loop before this one.
-  PenLoop(const drivers::haptics::HapticLimits& limits, drivers::haptic_pen::framed::FramedPen& pen, FieldReader& fields, GuardPage& guard,
+  PenLoop(const drivers::haptics::HapticLimits& limits, drivers::haptic_pen::HapticPen& pen, FieldReader& fields, GuardPage& guard,
           ipc::PenPage& page, const drivers::haptics::SafetyRecord& stored, const drivers::haptics::Feel& feel,
           std::uint64_t arms_answered = 0);
 
@@ -45,7 +45,7 @@ class PenLoop {
   void publish(std::int64_t now_ns, const drivers::haptics::HapticTick& tick, const drivers::haptics::HapticAnswer& answer);
   void keep(const drivers::haptics::HapticTick& tick, const drivers::haptics::HapticAnswer& answer);
 
-  drivers::haptic_pen::framed::FramedPen& pen_;
+  drivers::haptic_pen::HapticPen& pen_;
   FieldReader& fields_;
   GuardPage& guard_;
   ipc::PenPage& page_;

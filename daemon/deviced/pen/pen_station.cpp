@@ -7,8 +7,8 @@
 
 #include "base/file.h"
 #include "base/log.h"
+#include "drivers/haptic_pen/falcon/falcon_pen.h"
 #include "drivers/haptic_pen/hand_script.h"
-#include "drivers/port/open_port.h"
 #include "drivers/port/pty_pair.h"
 
 namespace prismesh::deviced::pen {
@@ -21,9 +21,10 @@ using drivers::haptics::SafetyPhase;
 using drivers::haptics::SafetyRecord;
 
 constexpr std::int64_t kTryAgainNs = 250'000'000;
+/// Looking through all USB devices takes five milliseconds; plugs are seen at once.
+constexpr std::int64_t kLookAgainNs = 1'000'000'000;
 /// Far longer than what latches: the line is then opened anew.
 constexpr std::int64_t kMaxSilenceOfPenNs = 1'000'000'000;
-constexpr int kSimulatedBaud = 115'200;
 
 Result<drivers::haptic_pen::HandSource> simulated_hand(const std::string& script) {
   if (script.empty()) return drivers::haptic_pen::HandSource(framed::wandering_hand);
@@ -38,7 +39,7 @@ Result<drivers::haptic_pen::HandSource> simulated_hand(const std::string& script
 
 PenStation::PenStation(const drivers::settings::HapticPenSettings& settings, LineGuard& guard, FieldReader& fields, ipc::PenPage& page,
                        RecordStore& records)
-    : settings_(settings), guard_(guard), fields_(fields), page_(page), records_(records), port_(settings.port) {}
+    : settings_(settings), guard_(guard), fields_(fields), page_(page), records_(records), port_(pen_place(settings)) {}
 
 Result<std::unique_ptr<PenStation>> PenStation::start(const drivers::settings::HapticPenSettings& settings, LineGuard& guard,
                                                       FieldReader& fields, ipc::PenPage& page, RecordStore& records, bool memory_locked) {
@@ -49,7 +50,9 @@ Result<std::unique_ptr<PenStation>> PenStation::start(const drivers::settings::H
   station->feel_.stiffness_newton_m = settings.stiffness_newton_m;
   station->feel_.friction = settings.friction;
   station->feel_.damping_newton_s_m = settings.damping_newton_s_m;
-  if (settings.port.empty()) {
+  if (settings.driver == drivers::settings::PenDriver::falcon) {
+    if (auto watch = drivers::port::watch_usb(drivers::haptic_pen::falcon::falcon_wanted())) station->plugs_ = std::move(*watch);
+  } else if (settings.port.empty()) {
     Result<drivers::port::PtyPair> terminal = drivers::port::open_pty_pair();
     if (!terminal) return fail(std::move(terminal.error()));
     station->port_ = terminal->slave_path;
@@ -76,9 +79,12 @@ PenStation::~PenStation() {
 }
 
 void PenStation::poll() {
-  const bool gone = pen_ && pen_->gone();
+  const bool gone = pen_ && pen_->pen().gone();
+  const bool sets_up = pen_ && !pen_->pen().advice().empty();
+  if (sets_up) heard_ns_ = clock_.now_ns();
   // Where a line has come back under its old name while the old one was held, nothing tells but its silence.
-  const bool silent = pen_ && clock_.now_ns() - std::max(opened_ns_, page_.state().measured_ns) > kMaxSilenceOfPenNs;
+  const bool silent =
+      pen_ && !sets_up && clock_.now_ns() - std::max({opened_ns_, heard_ns_, page_.state().measured_ns}) > kMaxSilenceOfPenNs;
   if (gone || silent) {
     store_record();
     close_line();
@@ -86,26 +92,25 @@ void PenStation::poll() {
     logging::warn("{}: {}", port_, trouble_);
     show_absent();
   }
-  if (!pen_ && clock_.now_ns() >= next_try_ns_) open_line();
-  if (pen_ && page_.state().measured_ns > opened_ns_) trouble_.clear();
+  const bool plugged = plugs_ && std::exchange(plugs_seen_, plugs_->arrived()) != plugs_seen_;
+  if (!pen_ && (plugged || clock_.now_ns() >= next_try_ns_)) open_line();
+  if (pen_ && (sets_up || page_.state().measured_ns > opened_ns_)) trouble_.clear();
   store_record();
 }
 
 void PenStation::open_line() {
-  next_try_ns_ = clock_.now_ns() + kTryAgainNs;
-  Result<std::unique_ptr<drivers::port::BytePort>> opened = drivers::port::open_port(port_, kSimulatedBaud);
+  next_try_ns_ = clock_.now_ns() + (settings_.driver == drivers::settings::PenDriver::falcon ? kLookAgainNs : kTryAgainNs);
+  Result<std::unique_ptr<OpenPen>> opened = open_pen(settings_, port_, guard_.page());
   if (!opened) {
     if (std::exchange(trouble_, opened.error().text()) != trouble_) logging::warn("{}", trouble_);
     return;
   }
-  line_ = std::move(*opened);
-  guarded_.emplace(*line_, guard_.page());
-  pen_.emplace(*guarded_, framed::simulated_limits({}));
+  pen_ = std::move(*opened);
   HapticLimits limits;
   limits.max_newton = settings_.max_newton;
-  loop_.emplace(limits, *pen_, fields_, guard_.page(), page_, records_.stored(), feel_, page_.state().arms_answered);
+  loop_.emplace(limits, pen_->pen(), fields_, guard_.page(), page_, records_.stored(), feel_, page_.state().arms_answered);
   Result<std::unique_ptr<PenThread>> started = PenThread::start(*loop_, guard_.page(), page_, health_);
-  Result<void> watched = started ? guard_.watch(*line_) : Result<void>(fail(started.error()));
+  Result<void> watched = started ? pen_->hand_to(guard_) : Result<void>(fail(started.error()));
   if (started) thread_ = std::move(*started);
   if (!watched) {
     trouble_ = watched.error().text();
@@ -123,8 +128,6 @@ void PenStation::close_line() {
   guard_.release();
   loop_.reset();
   pen_.reset();
-  guarded_.reset();
-  line_.reset();
 }
 
 void PenStation::show_absent() {
@@ -150,7 +153,7 @@ void PenStation::store_record() {
 }
 
 Result<void> PenStation::arm() {
-  if (!loop_) return fail("", "the pen isn't there" + (trouble_.empty() ? std::string() : ": " + trouble_));
+  if (!loop_) return fail("", "the pen isn't there" + (trouble().empty() ? std::string() : ": " + trouble()));
   if (!guard_.is_alive()) return fail("", "nobody guards the pen's line");
   if (arming_) return fail("", "the pen is being armed already");
   arms_before_ = page_.state().arms_answered;

@@ -9,6 +9,7 @@
 #include "base/clock.h"
 #include "daemon/deviced/pen/field_reader.h"
 #include "daemon/deviced/pen/line_guard.h"
+#include "daemon/deviced/pen/open_pen.h"
 #include "daemon/deviced/pen/pen_thread.h"
 #include "daemon/deviced/pen/record_store.h"
 #include "drivers/haptic_pen/framed/simulated_device.h"
@@ -35,7 +36,8 @@ class PenStation {
   void use(const drivers::haptics::Feel& feel);
 
   const std::string& where() const { return port_; }
-  const std::string& trouble() const { return trouble_; }  ///< why the line isn't open
+  /// Why the line isn't open, or what the device waits for.
+  std::string trouble() const { return trouble_.empty() && pen_ ? pen_->pen().advice() : trouble_; }
   const std::string& refused() const { return refused_; }  ///< as PenThread::refused
   const daemon::Heartbeat* heartbeat() const { return thread_ ? &thread_->heartbeat() : nullptr; }
 
@@ -57,12 +59,13 @@ class PenStation {
   MonotonicClock clock_;
   std::string port_, trouble_, refused_;
   std::int64_t next_try_ns_ = 0, opened_ns_ = 0;
-  bool arming_ = false;  ///< stored as armed, and the loop hasn't answered
+  std::int64_t heard_ns_ = 0;  ///< of a device that sets itself up
+  bool arming_ = false;        ///< stored as armed, and the loop hasn't answered
   std::uint64_t arms_before_ = 0;
   std::unique_ptr<drivers::haptic_pen::framed::SimulatedDeviceThread> device_;
-  std::unique_ptr<drivers::port::BytePort> line_;
-  std::optional<GuardedPort> guarded_;
-  std::optional<drivers::haptic_pen::framed::FramedPen> pen_;
+  std::unique_ptr<drivers::port::UsbWatch> plugs_;  ///< null: nothing tells of plugs here
+  std::uint64_t plugs_seen_ = 0;
+  std::unique_ptr<OpenPen> pen_;
   std::optional<PenLoop> loop_;
   std::unique_ptr<PenThread> thread_;
 };

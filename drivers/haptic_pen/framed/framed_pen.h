@@ -20,10 +20,8 @@ class FramedPen final : public HapticPen {
   void send(std::int64_t now_ns, const PenCommand& command) override;
   const PenLimits& limits() const override { return limits_; }
 
-  /// The line can't be used again.
-  bool gone() const { return gone_; }
-  /// Time from the newest answered force frame to the pose frame that answers it; 0: none yet.
-  std::int64_t round_trip_ns() const { return round_trip_ns_; }
+  bool gone() const override { return gone_; }
+  std::int64_t round_trip_ns() const override { return round_trip_ns_; }
   std::uint64_t lost_frames() const { return lost_frames_; }
 
  private:

@@ -4,9 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include "base/ring.h"
 #include "daemon/deviced/device_status.h"
 #include "daemon/deviced/loop_thread.h"
-#include "daemon/deviced/realtime/ring.h"
 
 namespace prismesh::deviced {
 namespace {

@@ -7,6 +7,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "drivers/space_mouse/report.h"
+
 namespace prismesh::drivers::port {
 namespace {
 
@@ -87,6 +89,29 @@ TEST(UdevRules, the_pen_may_be_opened_over_usb) {
   EXPECT_EQ(result.mode, "0660");
   EXPECT_THAT(result.tags, ElementsAre("uaccess"));
   EXPECT_THAT(result.written, ElementsAre(Pair("power/control", "on")));
+}
+
+TEST(UdevRules, every_space_mouse_may_be_read_and_no_other_hid_device) {
+  const UdevRules rules = station_rules();
+  const auto applied = [&](unsigned vendor, unsigned product) {
+    char hex[2][5];
+    std::snprintf(hex[0], sizeof hex[0], "%04x", vendor & 0xFFFF);
+    std::snprintf(hex[1], sizeof hex[1], "%04x", product & 0xFFFF);
+    const Adapter adapter{hex[0], hex[1], "", ""};
+    return apply_udev_rules(rules.rules, "add", {{"hidraw", "", {}, {}}, {"usb", "usbhid", {}, {}}, adapter.usb()});
+  };
+  int known = 0;
+  for (const unsigned vendor : {0x046Du, 0x256Fu})
+    for (unsigned product = 0xC5F0; product <= 0xC6FF; ++product) {
+      const bool is_one =
+          space_mouse::find_space_mouse(static_cast<std::uint16_t>(vendor), static_cast<std::uint16_t>(product)).has_value();
+      known += is_one ? 1 : 0;
+      const UdevResult result = applied(vendor, product);
+      ASSERT_EQ(result.mode, is_one ? "0660" : "") << std::hex << vendor << ":" << product;
+      ASSERT_EQ(result.group, is_one ? "prismesh" : "");
+      ASSERT_EQ(result.tags.size(), is_one ? 1u : 0u);
+    }
+  EXPECT_GT(known, 15);
 }
 
 TEST(UdevRules, no_other_device_is_changed) {

@@ -45,7 +45,8 @@ std::string all_of(const StationSettings& settings) {
        << settings.document.hang_s;
   const HapticPenSettings& p = settings.haptic_pen;
   text << '|' << int(p.driver) << p.port << '|' << p.max_newton << '|' << p.stiffness_newton_m << '|' << p.friction << '|'
-       << p.damping_newton_s_m << '|' << p.workspace_scale << '|' << p.left_handed << '|' << p.hand_script;
+       << p.damping_newton_s_m << '|' << p.workspace_scale << '|' << p.left_handed << '|' << p.hand_script << '|' << p.firmware << '|'
+       << p.force_scale << '|' << p.own_damping_newton_s_m << '|' << p.own_friction_newton;
   const RemoteSettings& r = settings.remote;
   text << '|' << r.address << '|' << r.port << '|' << r.hosts.size() << '|' << r.quota_gb << '|' << r.file_gb << '|' << r.reserved_gb << '|'
        << r.upload_hours;
@@ -101,6 +102,10 @@ friction = 0.1
 damping_newton_s_m = 0.4
 workspace_scale = 2.5
 hand = "left"
+firmware = "falcon.bin"
+force_scale = 0.9
+own_damping_newton_s_m = 0.7
+own_friction_newton = 0.2
 [remote]
 listen = "[::1]:7443"
 hosts = ["station.example", "Station"]
@@ -116,7 +121,7 @@ TEST(Settings, every_key_is_read) {
   EXPECT_EQ(all_of(parsed(kEveryKey)),
             "anaglyph|6.5|2DP-1|1920 1080 60|1|256|1|1|/dev/serial/by-id/usb-tracker|9600|0|1|4243|12.5|0.5|1 210.5 -15|61|lean|"
             "1|1|/dev/serial/by-id/usb-servo|57600|7|4|1|1000|1.5|6|20|middle-orbit|64|30|1/dev/pts/"
-            "9|6|500|0.1|0.4|2.5|1|push.hand|::1|7443|2|20|4|1|48");
+            "9|6|500|0.1|0.4|2.5|1|push.hand|falcon.bin|0.9|0.7|0.2|::1|7443|2|20|4|1|48");
 }
 
 TEST(Settings, names_choose_drivers_and_dialects) {
@@ -168,8 +173,9 @@ TEST(Settings, refuses_errors_with_line_and_remedy) {
       {"[hand]\nmouse = 3\n", "station.toml:2: hand.mouse must be a layout's name or file in quotes"},
       {"[document]\nhistory_mb = 1\n", "station.toml:2: document.history_mb is 1; it must be from 16 to 1048576 MB"},
       {"[document]\nhang_s = -1\n", "station.toml:2: document.hang_s is -1; it must be from 0 to 86400 s"},
-      {"[haptic_pen]\ndriver = 'falcon'\n",
-       "station.toml:2: haptic_pen.driver has no \"falcon\"; the nearest is \"none\" of none, simulated"},
+      {"[haptic_pen]\ndriver = 'falcn'\n",
+       "station.toml:2: haptic_pen.driver has no \"falcn\"; the nearest is \"falcon\" of none, simulated, falcon"},
+      {"[haptic_pen]\nforce_scale = 0.1\n", "station.toml:2: haptic_pen.force_scale is 0.1;"},
       {"[haptic_pen]\nhand = 'both'\n", "station.toml:2: haptic_pen.hand has no \"both\""},
       {"[haptic_pen]\nhand_script = 7\n", "station.toml:2: haptic_pen.hand_script must be a file's name in quotes"},
       {"[haptic_pen]\nport = 'pen'\n", "station.toml:2: haptic_pen.port must be a device's whole path"},

@@ -8,6 +8,7 @@
 #include "base/clock.h"
 #include "daemon/deviced/pen/line_guard.h"
 #include "daemon/deviced/pen/pen_loop.h"
+#include "drivers/haptic_pen/framed/framed_pen.h"
 #include "drivers/haptic_pen/framed/simulated_device.h"
 #include "drivers/port/memory_line.h"
 

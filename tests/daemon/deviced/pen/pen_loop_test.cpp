@@ -159,5 +159,35 @@ TEST(Records, come_back_from_disk_and_a_spoilt_one_latches) {
   fs::remove_all(folder);
 }
 
+/// A pen whose line may be stuck.
+class StuckPen final : public drivers::haptic_pen::HapticPen {
+ public:
+  drivers::haptic_pen::PenReading read(std::int64_t) override { return {}; }
+  void send(std::int64_t, const drivers::haptic_pen::PenCommand&) override {}
+  const drivers::haptic_pen::PenLimits& limits() const override { return limits_; }
+  bool gone() const override { return false; }
+  bool is_stuck(std::int64_t) override { return stuck; }
+  bool stuck = false;
+
+ private:
+  drivers::haptic_pen::PenLimits limits_;
+};
+
+TEST(PenLoop, leaves_a_line_that_is_stuck_to_the_guard) {
+  StuckPen pen;
+  FieldReader fields;
+  GuardPage guard;
+  ipc::PenPage page = ipc::PenPage::create().value();
+  PenLoop loop({}, pen, fields, guard, page, {}, {});
+  loop.tick(1'000'000'000);
+  EXPECT_EQ(guard.beats, 1u);
+  pen.stuck = true;
+  loop.tick(1'001'000'000);
+  EXPECT_EQ(guard.beats, 1u);
+  pen.stuck = false;
+  loop.tick(1'002'000'000);
+  EXPECT_EQ(guard.beats, 2u);
+}
+
 }  // namespace
 }  // namespace prismesh::deviced::pen

@@ -7,7 +7,7 @@
 #include <optional>
 #include <type_traits>
 
-namespace prismesh::deviced {
+namespace prismesh {
 
 template <class T, std::size_t Places>
 requires std::is_trivially_copyable_v<T>
@@ -38,4 +38,4 @@ class Ring {
   alignas(64) std::atomic<std::size_t> read_{0};
 };
 
-}  // namespace prismesh::deviced
+}  // namespace prismesh
