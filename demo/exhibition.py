@@ -2,7 +2,7 @@
 import shutil
 import subprocess
 
-from programs import ROOT, Stop, figures, program, shown, tell, tool
+from programs import ROOT, Stop, program, shown, tell, tool
 
 PICTURES = 16
 PACE_S = 2.6  # the show of the sample is 42 s long
@@ -28,5 +28,5 @@ def exhibit(station):
         raise Stop(f"the show went {len(steps)} of its {wanted} steps: {steps[-1:]}")
     if deck.read_bytes() != before:
         raise Stop("the show has changed the deck on the disk")
-    tell(f"exhibition the kiosk plays a show of {wanted} steps on a sample of {figures('info', deck)['shells']} shells until somebody comes; docs/exhibition.md")
+    tell(f"exhibition the kiosk plays a show of {wanted} steps on the sample until somebody comes; docs/exhibition.md")
     tell(f"  {shown(folder)}: {PICTURES} pictures of it, in red and cyan")

@@ -211,12 +211,12 @@ void PanelArrangement::build(ToolContext& context, std::span<const input::MouseB
   follow_borders(layout);
   build_menu(context, layout);
   const bool box = context.tools.asking() != nullptr || context.open.dialog.owner != nullptr;
-  if (document && connection.connected())
-    for (auto* tool : context.tools.with<toolkit::DrawsOverPicture>()) tool->draw_over_picture(layout);
-  if (document && connection.connected()) hand(context, layout);
   if (!connection.connected() || ((!document || !progress.words().empty()) && !box))
     panels::state_panel({connection.connected(), connection.socket().string(), progress.words(), progress.fraction()},
                         input::binding_of(key_bindings(), tools::files::open_command()), layout);
+  if (connection.connected())
+    for (auto* tool : context.tools.with<toolkit::DrawsOverPicture>()) tool->draw_over_picture(layout);
+  if (document && connection.connected()) hand(context, layout);
   build_box(context, layout);
   cover(context, mouse, layout);
   if (!guidance.empty() && document) {

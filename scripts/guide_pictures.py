@@ -81,8 +81,6 @@ def walk(kiosk, shoot, deck):
     kiosk.type(str(deck))
     kiosk.key("Return")
     kiosk.wait("generation ", "aim ", "picture ")
-    kiosk.key("Escape")  # what the deck is warned of
-    kiosk.wait("reads none")
     at = kiosk.pixel(*SILL_FACE)
     kiosk.move(*at)
     kiosk.zoom(*at)
@@ -102,7 +100,9 @@ def walk(kiosk, shoot, deck):
     kiosk.first_error()
     shoot("quality")
     kiosk.key("ctrl+e")
-    kiosk.wait("generation ", "picture ")
+    kiosk.wait("reads information")
+    kiosk.key("Escape")  # what the repair reports
+    kiosk.wait("reads none", "picture ")
     shoot("repair")
     kiosk.key("j", "ctrl+f", "ctrl+c")
     kiosk.wait("view beside", "picture ")

@@ -36,6 +36,10 @@ TEST_F(TourTest, goes_on_when_what_it_says_was_done) {
   ASSERT_EQ(heard("tour "), "tour 5 of 8 Repair");
   station_->key("ctrl+shift+l");  // nothing got worse: relaxing does as well
   ASSERT_EQ(heard("tour "), "tour 6 of 8 Compare");
+  station_->settled_aim();
+  ASSERT_TRUE(station_->item("tour place").has_value()) << "a frame shows where";
+  EXPECT_EQ(station_->item("tour place")->state, "rail Compare");
+  EXPECT_EQ(station_->item("tour place")->x, station_->item("rail Compare")->x);
   station_->key("c");
   ASSERT_EQ(heard("tour "), "tour 7 of 8 Save a copy");
   station_->key("c");

@@ -97,7 +97,7 @@ bool staff_button(PanelLayout& layout) {
 UnlockedAsked unlocked_card(PanelLayout& layout) {
   const panels::Place view = layout.view();
   UnlockedAsked asked = UnlockedAsked::nothing;
-  begin_card("Unlocked", ImVec2(view.right() - kGrid, view.bottom() - kGrid), ImVec2(1, 1), 0, kCardFlags);
+  begin_card("Unlocked", ImVec2(view.right() - kGrid, view.y + kGrid), ImVec2(1, 0), 0, kCardFlags);
   ImGui::TextUnformatted("The exhibition is unlocked: files can be opened and saved.");
   if (large_button("Lock")) asked = UnlockedAsked::lock;
   panels::note_item(layout, "exhibition lock", "");

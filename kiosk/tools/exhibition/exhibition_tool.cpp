@@ -22,7 +22,8 @@ namespace {
 constexpr std::string_view kName = "exhibition";
 constexpr std::int64_t kShowFrameNs = 33'000'000;  ///< between two pictures of the show
 constexpr std::int64_t kRestoreAgainNs = 5'000'000'000;
-constexpr double kFitShare = 0.85;  ///< of the view that a fitted model has in the show
+constexpr double kFitShare = 0.75;  ///< of the view that a fitted model has in the show ...
+constexpr double kFitAbove = 0.1;   ///< ... and how far above the middle, for the card below it
 constexpr std::array kStageNames{"show", "visit", "warning", "over", "unlocked"};
 
 std::int64_t nanoseconds_of(double seconds) { return std::llround(seconds * 1e9); }
@@ -64,10 +65,18 @@ void ExhibitionTool::watch(std::int64_t now_ns) {
   clock_.turn(now_ns);
   if (clock_.stage() == Stage::warning && clock_.seconds_left(now_ns) != left) ++context_.changes;
   follow_stage();
+  drop_notices();
   if (restoring_ && asked_ && shows_deck()) restored();
   if (restoring_ && now_ns >= restore_ns_ && context_.link.document.state() && !context_.link.connection.progress().can_stop())
     restore_deck();
   if (clock_.stage() == Stage::show) play(now_ns);
+}
+
+/// What a deck is warned of is no matter of visitors; during the show nobody is there to read anything.
+void ExhibitionTool::drop_notices() {
+  const bool show = clock_.stage() == Stage::show;
+  while (locked() && !context_.notices.empty() && (show || context_.notices.front().kind == notices::Notice::Kind::warning))
+    context_.notices.read();
 }
 
 void ExhibitionTool::follow_stage() {
@@ -148,7 +157,6 @@ std::int64_t ExhibitionTool::next_ns(std::int64_t now_ns) const {
 
 void ExhibitionTool::play(std::int64_t now_ns) {
   if (!context_.shown.snapshot || restoring_ || show_.empty()) return;
-  while (!context_.notices.empty()) context_.notices.read();  // nobody is there to read them
   if (!step_) {
     step_ = 0;
     begin_step(now_ns);
@@ -187,6 +195,7 @@ void ExhibitionTool::begin_step(std::int64_t now_ns) {
     const Eigen::Vector2d room = toolkit::room_of_view_mm(view) * kFitShare;
     const double eyes = view.seen.between_eyes_mm.z();
     view.view = selection.empty() ? context_.renderer.fitted(view.view, room, eyes) : stereo::fit_turned(view.view, selection, room, eyes);
+    view.view.pan_mm.y() += kFitAbove * toolkit::room_of_view_mm(view).y();
     context_.tools.view_moved();
   }
   if (step.edit) toolkit::send(context_, *step.edit);

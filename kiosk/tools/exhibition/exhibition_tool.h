@@ -38,6 +38,7 @@ class ExhibitionTool final : public toolkit::Tool,
   bool on() const { return context_.options.exhibition.has_value(); }
   bool locked() const { return on() && clock_.stage() != Stage::unlocked; }
   void follow_stage();
+  void drop_notices();
   void restore_deck();
   bool shows_deck() const;
   void restored();

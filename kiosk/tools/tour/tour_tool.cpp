@@ -9,6 +9,7 @@
 #include "kiosk/input/key_table.h"
 #include "kiosk/panels/layout.h"
 #include "kiosk/panels/widgets.h"
+#include "kiosk/toolkit/picking.h"
 #include "kiosk/toolkit/tool_set.h"
 
 namespace prismesh::kiosk::tools::tour {
@@ -36,7 +37,8 @@ constexpr std::array kKeys = {
 enum StepOfTour : std::size_t { kOpen, kTurn, kSelect, kPull, kRepair, kCompare, kSave, kEnd, kSteps };
 
 constexpr std::array<TourStep, kSteps> kTour{{
-    {"Open a deck", "Ctrl+O lists the recent decks and the folders. Choose one with the arrow keys, and press Enter.", "Ctrl+O"},
+    {"Open a deck", "Ctrl+O lists the recent decks and the folders. Choose one with the arrow keys, and press Enter.", "Ctrl+O",
+     "open a deck"},
     {"Look around", "Drag with the right button to turn the view, with the middle one to move it. The wheel zooms. Ctrl+F fits the model.",
      "Ctrl+F"},
     {"Select a face",
@@ -44,20 +46,21 @@ constexpr std::array<TourStep, kSteps> kTour{{
     {"Pull",
      "Drag the arrow that stands on the selection. Shells that would fail are red meanwhile, those that would warn yellow. Digits set the "
      "length exactly. T shows how the pull fades out.",
-     "T"},
+     "T", kAtHandle},
     {"Repair",
      "Ctrl+E repairs what the pull made worse, and nothing elsewhere. If nothing got worse, pull farther: the dock counts what warns and "
      "fails.",
-     "Ctrl+E"},
+     "Ctrl+E", "rail Quality"},
     {"Compare",
-     "C shows the state before the last edit; C again goes back. Ctrl+C shows the deck as it was opened beside the present state.", "C"},
+     "C shows the state before the last edit; C again goes back. Ctrl+C shows the deck as it was opened beside the present state.", "C",
+     "rail Compare"},
     {"Save a copy",
      "Ctrl+Shift+C saves a copy under another name: only the lines of what changed are written anew. Ctrl+S would save in place.",
-     "Ctrl+Shift+C"},
+     "Ctrl+Shift+C", "deck"},
     {"That is all",
      "Every edit goes this way. Ctrl+Z takes an edit back, the tab History lists them all. Ctrl+P finds any command by its words; F1 lists "
      "the keys.",
-     "Ctrl+P"},
+     "Ctrl+P", "find"},
 }};
 
 }  // namespace
@@ -120,8 +123,29 @@ Result<void> TourTool::follow() {
   return {};
 }
 
+/// Draws a frame around what the step is about, where that is on the screen.
+void TourTool::mark_place(PanelLayout& layout) const {
+  const std::string_view place = kTour[*step_].place;
+  constexpr float kRound = 6, kLine = 3, kHandleRadius = 46;
+  ImDrawList& list = *ImGui::GetForegroundDrawList();
+  if (place == kAtHandle) {
+    const auto& centre = context_.selection.centre;
+    const auto at = centre ? stereo::pixel_of(toolkit::aim(context_.view), *centre) : std::nullopt;
+    if (!at || context_.tools.pulling()) return;
+    list.AddCircle(ImVec2(static_cast<float>(at->x()), static_cast<float>(at->y())), kHandleRadius, panels::kInformationColour, 0, kLine);
+    return layout.items.push_back({"tour place", std::string(place), {}});
+  }
+  const auto item = std::ranges::find(layout.items, place, &panels::ScreenItem::name);
+  if (place.empty() || item == layout.items.end()) return;
+  const panels::Place& around = item->place;
+  list.AddRect(ImVec2(around.x - kLine, around.y - kLine), ImVec2(around.right() + kLine, around.bottom() + kLine),
+               panels::kInformationColour, kRound, 0, kLine);
+  layout.items.push_back({"tour place", std::string(place), around});
+}
+
 void TourTool::draw_over_picture(PanelLayout& layout) {
   if (!step_) return;
+  mark_place(layout);
   const panels::Place view = layout.view();
   const float font = ImGui::GetFontSize();
   const auto room = static_cast<float>(view.width) - 2 * panels::kMargin;

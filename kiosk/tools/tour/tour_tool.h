@@ -19,8 +19,10 @@ std::span<const input::KeyBinding> keys();
 /// A step of the tour. The key that its words name first stands in `key`, as the key tables write it.
 struct TourStep {
   std::string_view title, words;
-  std::string_view key;  ///< empty: they name none
+  std::string_view key;      ///< empty: they name none
+  std::string_view place{};  ///< the item on the screen that it is about, or kAtHandle; a frame is drawn around it. Empty: the whole view
 };
+inline constexpr std::string_view kAtHandle = "handle";
 std::span<const TourStep> tour_steps();
 
 class TourTool final : public toolkit::Tool, public toolkit::MovesView, public toolkit::DrawsOverPicture {
@@ -40,6 +42,7 @@ class TourTool final : public toolkit::Tool, public toolkit::MovesView, public t
   bool done() const;
   void go_to(std::size_t step);
   void end();
+  void mark_place(panels::PanelLayout& layout) const;
 
   toolkit::ToolContext& context_;
   std::optional<std::size_t> step_;  ///< nothing: no tour
