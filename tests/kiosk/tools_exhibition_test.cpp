@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "kiosk/tools/exhibition/allowed_requests.h"
+#include "kiosk/tools/exhibition/exhibition_tool.h"
 #include "kiosk/tools/exhibition/pin_gate.h"
 #include "kiosk/tools/exhibition/show_clock.h"
 #include "kiosk/tools/exhibition/show_script.h"
@@ -66,10 +67,20 @@ TEST_F(ExhibitionStages, a_face_that_comes_ends_the_show_and_one_that_stays_does
   clock_.face(false, now_);
   wait(1);
   clock_.face(true, now_);
+  wait(1);
+  clock_.face(true, now_);
+  EXPECT_EQ(clock_.stage(), Stage::show) << "the tracker has lost it for a moment";
+  const auto leave = [&] {
+    clock_.face(false, now_);
+    wait(2);
+    clock_.face(false, now_);
+  };
+  leave();
+  clock_.face(true, now_);
   wait(0.3);
   clock_.face(true, now_);
   EXPECT_EQ(clock_.stage(), Stage::show) << "somebody walks by";
-  clock_.face(false, now_);
+  leave();
   clock_.face(true, now_);
   wait(0.8);
   clock_.face(true, now_);
@@ -79,6 +90,18 @@ TEST_F(ExhibitionStages, a_face_that_comes_ends_the_show_and_one_that_stays_does
     clock_.face(true, now_);
   }
   EXPECT_EQ(clock_.stage(), Stage::warning) << "a chair has a face too";
+}
+
+TEST(ExhibitionFace, is_seen_by_a_tracker_that_works) {
+  using toolkit::EyesFacts;
+  EyesFacts facts;
+  EXPECT_EQ(face_seen(std::nullopt), std::nullopt);
+  facts.condition = EyesFacts::Condition::trouble;
+  EXPECT_EQ(face_seen(facts), std::nullopt) << "a tracker that is unplugged says nothing of who is there";
+  facts.condition = EyesFacts::Condition::waiting;
+  EXPECT_EQ(face_seen(facts), std::optional(false));
+  facts.condition = EyesFacts::Condition::good;
+  EXPECT_EQ(face_seen(facts), std::optional(true));
 }
 
 TEST_F(ExhibitionStages, it_locks_itself_again) {

@@ -42,6 +42,12 @@ ShowTimes times_of(const toolkit::ToolOptions& options) {
 
 }  // namespace
 
+std::optional<bool> face_seen(const std::optional<toolkit::EyesFacts>& eyes) {
+  using Condition = toolkit::EyesFacts::Condition;
+  if (!eyes || eyes->condition == Condition::trouble) return std::nullopt;
+  return eyes->condition == Condition::good;
+}
+
 ExhibitionTool::ExhibitionTool(toolkit::ToolContext& context)
     : context_(context),
       clock_(times_of(context.options)),
@@ -59,8 +65,8 @@ std::string_view ExhibitionTool::name() const { return kName; }
 
 void ExhibitionTool::watch(std::int64_t now_ns) {
   if (!on()) return;
-  const auto& eyes = context_.view.eyes;
-  clock_.face(eyes && eyes->in_depth && eyes->condition == toolkit::EyesFacts::Condition::good, now_ns);
+  // A tracker that was away says nothing of who has come meanwhile.
+  if (const std::optional<bool> face = face_seen(context_.view.eyes)) clock_.face(*face, now_ns);
   const int left = clock_.stage() == Stage::warning ? clock_.seconds_left(now_ns) : 0;
   clock_.turn(now_ns);
   if (clock_.stage() == Stage::warning && clock_.seconds_left(now_ns) != left) ++context_.changes;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "kiosk/toolkit/abilities.h"
+#include "kiosk/toolkit/eyes_facts.h"
 #include "kiosk/toolkit/tool.h"
 #include "kiosk/toolkit/tool_context.h"
 #include "kiosk/tools/exhibition/exhibition_panels.h"
@@ -16,6 +17,9 @@
 #include "kiosk/tools/exhibition/show_script.h"
 
 namespace prismesh::kiosk::tools::exhibition {
+
+/// Whether the tracker sees a face; nothing: there is no tracker, or it doesn't say.
+std::optional<bool> face_seen(const std::optional<toolkit::EyesFacts>& eyes);
 
 /// Does nothing unless the options say that this is an exhibition.
 class ExhibitionTool final : public toolkit::Tool,

@@ -27,9 +27,11 @@ bool ShowClock::touched(std::int64_t now_ns) {
 void ShowClock::face(bool there, std::int64_t now_ns) {
   if (!there) {
     face_since_ns_ = -1;
-    face_counted_ = false;
+    if (gone_since_ns_ < 0) gone_since_ns_ = now_ns;
+    if (now_ns - gone_since_ns_ >= kGoneNs) face_counted_ = false;
     return;
   }
+  gone_since_ns_ = -1;
   if (face_since_ns_ < 0) face_since_ns_ = now_ns;
   if (face_counted_ || now_ns - face_since_ns_ < kFaceNs) return;
   face_counted_ = true;

@@ -39,6 +39,8 @@ class ShowClock {
   std::int64_t next_ns(std::int64_t now_ns) const;
 
   static constexpr std::int64_t kFaceNs = 700'000'000;  ///< so long a face must stay to count: nobody who walks by
+  static constexpr std::int64_t kGoneNs =
+      2'000'000'000;  ///< so long it must be away to be another one when it comes back: trackers lose a face for a moment
 
  private:
   void become(Stage stage, std::int64_t now_ns);
@@ -47,6 +49,7 @@ class ShowClock {
   Stage stage_ = Stage::show;
   std::int64_t since_ns_ = 0;        ///< the last input, or the warning's beginning
   std::int64_t face_since_ns_ = -1;  ///< negative: none is there
+  std::int64_t gone_since_ns_ = -1;  ///< negative: one is there
   bool face_counted_ = true;         ///< a face that is there at the beginning has seen the last visit
 };
 
