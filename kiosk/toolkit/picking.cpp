@@ -28,6 +28,7 @@ render::Picture plain_picture(const PictureView& view) {
   picture.panel = view.panel;
   picture.colour = view.colour;
   picture.shadows = view.shadows;
+  picture.thickness = view.thickness;
   return picture;
 }
 
