@@ -229,7 +229,7 @@ Result<void> Renderer::set_contact(ContactPicture picture) {
 Result<void> Renderer::set_cut(std::optional<CutPicture> cut) {
   ++impl_->scene_version;
   std::optional<CutPicture> beside = cut;
-  if (beside) beside->segments.clear();  // they are those of this model
+  if (beside) beside->segments = beside->beside;
   if (Result<void> done = impl_->other_layer.set_cut(std::move(beside)); !done) return done;
   return impl_->layer.set_cut(std::move(cut));
 }
