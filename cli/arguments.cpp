@@ -346,6 +346,12 @@ void add_render(Parser& parser) {
   pass_on("--eye", "X,Y,Z: the point between the eyes, mm from the screen's centre (default 0,0,650)");
   pass_on("--mask", "position of a movable mask, mm (default: the right one for these eyes)");
   pass_on("--view", "front, back, left, right, top, bottom or iso (default)");
+  app->add_flag_callback(
+      "--thickness",
+      [o = options] {
+        o->passed_on.insert(o->passed_on.end(), {"--thickness", "on"});
+      },
+      "draw shells as plates with the thickness of their part");
   add_optional(
       app, "--colour", options->colour,
       "parts (default), quality, part-states, or a field: displacement, distance-to-original, distance, metric:NAME, composite, time-step");

@@ -132,7 +132,8 @@ struct RenderOptions {
   std::optional<std::filesystem::path> against;  ///< the deck that a field compares with
   std::string from, to;                          ///< expressions, of the field "distance"
   std::optional<std::string> limits;             ///< CLEAR,FULL of the colour map
-  /// Options with values that are passed on to the kiosk: --size, --profile, --eye, --mask, --view, --map, --bands.
+  /// Options with values that are passed on to the kiosk: --size, --profile, --eye, --mask, --view, --thickness, --map,
+  /// --bands.
   std::vector<std::string> passed_on;
 };
 int render(const RenderOptions& options, const Common& common, const Context& context);

@@ -85,6 +85,7 @@ int cross_section(const CrossSectionOptions& options, const Common& common, cons
   const Result<CrossSection> section = mesh::measure::cross_section(model, options.plane, left_out);
   if (!section) return refuse({"--plane", 0, section.error().message});
   say_warnings(context, *document);
+  say_unit_guess(context, *document);
   if (common.json)
     context.out << cross_section_json(model, *section) << '\n';
   else

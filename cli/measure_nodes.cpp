@@ -65,6 +65,7 @@ int measure_nodes(const MeasureOptions& options, const Common& common, const Con
     nodes.push_back(node);
   }
   say_warnings(context, *document);
+  say_unit_guess(context, *document);
   const mesh::measure::NodeMeasures measures = mesh::measure::measure_nodes(model, nodes);
   if (common.json)
     context.out << measure_json(model, nodes, measures) << '\n';

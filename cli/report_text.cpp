@@ -119,6 +119,12 @@ void say_guesses(const Context& context, const mesh::document::Document& documen
   if (!guesses.empty()) say(context, Error{document.path.string(), 0, "note: guessed " + guesses + "; set with " + options});
 }
 
+void say_unit_guess(const Context& context, const mesh::document::Document& document) {
+  if (document.settings.length_unit_guessed)
+    say(context, Error{document.path.string(), 0,
+                       "note: guessed length unit " + std::string(name(document.settings.length_unit)) + "; set with --length-unit"});
+}
+
 bool output_is_good(const Context& context) {
   context.out.flush();
   if (context.out) return true;

@@ -41,6 +41,8 @@ void say(const Context& context, const Error& error);
 void say_warnings(const Context& context, const mesh::document::Document& document);
 void say_warnings(const Context& context, std::span<const mesh::deck::Warning> warnings);
 void say_guesses(const Context& context, const mesh::document::Document& document);
+/// The same of the length unit alone, for commands that only measure.
+void say_unit_guess(const Context& context, const mesh::document::Document& document);
 
 /// Flushes standard output and returns whether everything was written; prints a reason if not. Call it before writing a deck, since a
 /// command that fails writes nothing.

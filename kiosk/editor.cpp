@@ -132,6 +132,7 @@ void Editor::take_newest() {
   const bool other_document = next && (!shown.snapshot || shown.document_number != context_.link.document.number());
   shown.document_number = context_.link.document.number();
   shown.snapshot = next;
+  if (next) context_.link.notices.follow_state(next->info().generation, next->info().can_redo);
   // What stays within comfortable depth is what is shown now.
   if (const stereo::Box box = context_.renderer.bounds(); !box.empty()) context_.view.view.bounds = stereo::sphere_around(box);
   if (other_document) {
@@ -140,6 +141,8 @@ void Editor::take_newest() {
     context_.pointed = {};  // it speaks of the old deck until the pointer moves
   }
   toolkit::take_model(context_);
+  if (const render::ModelSource* model = context_.renderer.model(); model != nullptr && toolkit::is_out_of_sight(context_.pointed, *model))
+    context_.pointed = {};
   if (!other_document) return;
   for (const auto& tool : tools_.all()) tool->document_changed();
 }

@@ -16,6 +16,7 @@
 #include "kiosk/panels/gui.h"
 #include "kiosk/render/offscreen.h"
 #include "kiosk/render/renderer.h"
+#include "kiosk/toolkit/words_on_thickness.h"
 #include "kiosk/tools/comparison/legend.h"
 
 namespace prismesh::kiosk {
@@ -38,6 +39,7 @@ struct RenderOptions {
   std::optional<int> field;  ///< descriptor of a field's values
   tools::comparison::LegendFacts legend;
   int samples = 4;
+  bool thickness = false;
 };
 
 /// Numbers separated by `separator`, nothing else; empty if the text is anything else.
@@ -107,6 +109,12 @@ Result<void> read_samples(const std::string& text, RenderOptions& options) {
   return {};
 }
 
+Result<void> read_thickness(const std::string& text, RenderOptions& options) {
+  if (text != "on" && text != "off") return wrong("--thickness", text, "is on or off");
+  options.thickness = text == "on";
+  return {};
+}
+
 Result<void> read_view(const std::string& text, RenderOptions& options) {
   options.view = text;
   if (stereo::named_rotation(text)) return {};
@@ -172,6 +180,7 @@ Result<RenderOptions> parse(std::span<const std::string> arguments) {
       {"--eye", [&](const std::string& text) { return read_eye(text, options); }},
       {"--mask", [&](const std::string& text) { return read_mask(text, options); }},
       {"--view", [&](const std::string& text) { return read_view(text, options); }},
+      {"--thickness", [&](const std::string& text) { return read_thickness(text, options); }},
       {"--colour", [&](const std::string& text) { return read_colour(text, options); }},
       {"--limits", [&](const std::string& text) { return read_limits(text, options); }},
       {"--map", [&](const std::string& text) { return read_map(text, options); }},
@@ -246,6 +255,7 @@ Result<void> render_picture(const RenderOptions& options, const stereo::Profile&
   picture.eye_separation_mm = profile.eye_separation_mm.value_or(stereo::kMeanEyeSeparationMm);
   picture.mask_mm = options.mask_mm;
   picture.colour = *render::colour_mode_from(options.colour);
+  picture.thickness = options.thickness;
   picture.view.rotation = *stereo::named_rotation(options.view);
   picture.view.bounds = stereo::sphere_around((*renderer)->bounds());
   picture.view = (*renderer)->fitted(picture.view, stereo::screen_size_mm(profile, options.width, options.height), options.eye_mm.z());
@@ -256,6 +266,8 @@ Result<void> render_picture(const RenderOptions& options, const stereo::Profile&
     gui = std::move(*shown);
     picture.overlay = [&](const render::EyeImage& image) { gui->draw({image.width, image.height}, image.from_picture); };
   }
+  if (const std::string note = options.thickness ? toolkit::words_on_thickness((*snapshot)->info().parts) : std::string(); !note.empty())
+    std::fprintf(stderr, "%s: note: %s\n", options.picture.c_str(), note.c_str());
   const auto report = (*renderer)->draw(picture, offscreen->framebuffer(), options.width, options.height);
   if (!report) return fail(report.error());
   if (report->glyphs_left_out > 0)

@@ -40,7 +40,7 @@ void EditRequests::answered(const ipc::Answer& answer, bool selecting, const std
   if (edited == nullptr) return;
   if (!document_.shows(edited->generation)) document_.outdate();
   if (selecting) return;  // what a selection did is in the picture
-  notices_.tell_edit(what, edited->report, document_.length_unit());
+  notices_.tell_edit(what, edited->report, document_.length_unit(), edited->generation);
 }
 
 }  // namespace prismesh::kiosk::link

@@ -5,12 +5,14 @@
 
 namespace prismesh::kiosk::link {
 
-void LinkNotices::tell_edit(const std::string& what, const mesh::document::EditReport& report, std::string_view unit) {
+void LinkNotices::tell_edit(const std::string& what, const mesh::document::EditReport& report, std::string_view unit,
+                            std::uint64_t generation) {
   ++changes_;
   const std::string words = result_words(what, report, unit);
   if (!words.empty()) {
     result_ = words;
     result_of_ = number_.value();
+    result_generation_ = generation;
     ++results_;
     trace_.line("result " + words);
   } else {

@@ -24,8 +24,12 @@ class LinkNotices {
     trace_.line(notices::trace_of(notice));
     waiting_.push_back(std::move(notice));
   }
-  /// Tells what an edit did: its result in a line (may be empty), and its notes.
-  void tell_edit(const std::string& what, const mesh::document::EditReport& report, std::string_view unit);
+  /// Tells what an edit did: its result in a line (may be empty), and its notes. `generation`: that it made.
+  void tell_edit(const std::string& what, const mesh::document::EditReport& report, std::string_view unit, std::uint64_t generation);
+  /// A state is shown. If it comes before the one that the result is of, somebody undid the edit: its result is forgotten.
+  void follow_state(std::uint64_t generation, bool can_redo) {
+    if (can_redo && generation != result_generation_) forget_result();
+  }
   /// Of the last edit that has one; empty: forgotten, or the deck is another.
   const std::string& result() const;
   /// Counts up with each result.
@@ -41,7 +45,8 @@ class LinkNotices {
   std::vector<notices::Notice> waiting_;
   std::uint64_t changes_ = 0;
   std::string result_;
-  std::uint64_t result_of_ = 0;  ///< the document that it is about
+  std::uint64_t result_of_ = 0;          ///< the document that it is about
+  std::uint64_t result_generation_ = 0;  ///< of the state that its edit made
   std::uint64_t results_ = 0;
 };
 

@@ -106,7 +106,7 @@ void RemoteDrag::send_commit() {
 void RemoteDrag::committed(const ipc::Edited& edited) {
   if (!drag_) return;
   mesh::document::set_displacement(drag_->edit, drag_->wanted);
-  notices_.tell_edit(words_of_edit(drag_->edit, document_.length_unit()), edited.report, document_.length_unit());
+  notices_.tell_edit(words_of_edit(drag_->edit, document_.length_unit()), edited.report, document_.length_unit(), edited.generation);
   // Without its preview the nodes would jump back until the generation is here.
   drag_->made = edited.generation;
   if (document_.shows(edited.generation))

@@ -9,6 +9,14 @@
 
 namespace prismesh::kiosk::render {
 
+namespace {
+
+/// Of the largest half thickness: enough for what is seen at up to 60 degrees from its normal. A sheet that lies against another one stays
+/// behind it: their mid-surfaces are two half thicknesses apart, and the outer face is one more away.
+constexpr double kOverPlates = 2;
+
+}  // namespace
+
 Eigen::Matrix3d picture_from(const EyeImage& image) {
   Eigen::Matrix3d from_texels, to_picture = Eigen::Matrix3d::Identity();
   from_texels << 2.0 / image.width, 0, -1, 0, 2.0 / image.height, -1, 0, 0, 1;
@@ -26,6 +34,9 @@ Frame::Frame(const EyeView& eye_view, const Picture& picture, const ModelLayer& 
   screen_from_model = (screen_from_deck * deck_from_model).cast<float>();
   screen_from_normal = view.rotation.toRotationMatrix().cast<float>();
   cut = cut_plane(model);
+  if (picture.thickness)  // a single thick part mustn't make marks shine through others
+    over_plates_mm =
+        static_cast<float>(kOverPlates * view.mm_per_unit * std::min(0.5 * model.plates().max_thickness(), model.typical_side()));
   eye_in_model = (stereo::to_deck(view, eye.eye_mm) - model.textures().origin()).cast<float>();
   const Eigen::Matrix2d clip = eye.image.from_picture.leftCols<2>() * Eigen::Vector2d(1, -1).asDiagonal();
   const Eigen::Matrix2d texels = 0.5 * Eigen::Vector2d(eye.image.width, eye.image.height).asDiagonal() * clip;
@@ -69,6 +80,7 @@ void Frame::set(const gl::Program& program) const {
   program.set("clip_from_screen", Eigen::Matrix4f(eye.clip_from_screen.cast<float>()));
   program.set("viewer_mm", static_cast<float>(eye.viewer_mm));
   program.set("cut_plane", cut);
+  program.set("over_plates_mm", over_plates_mm);
 }
 
 bool may_be_seen(const stereo::Box& box, const Eigen::Matrix4d& clip_from_deck) {

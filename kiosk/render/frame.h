@@ -36,6 +36,8 @@ struct Frame {
   Eigen::Matrix3f screen_from_normal;
   Eigen::Vector3f eye_in_model;
   Eigen::Vector4f cut;  ///< cut_plane
+  /// By which marks on mid-surfaces are moved toward the eye, so that the shells' own plates don't hide them; 0: no plates are drawn.
+  float over_plates_mm = 0;
   // Maps between steps on the display (pixels, y up), in normalised coordinates and in texels of the image.
   Eigen::Matrix2f clip_from_pixels, pixels_from_clip, texels_from_pixels, pixels_from_texels;
 

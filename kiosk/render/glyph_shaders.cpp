@@ -62,7 +62,7 @@ void main() {
   vec2 high = kind == 6u ? middle + reach : max(max(seen[0], seen[1]), max(seen[2], seen[3]));
   float rim = kRim + (kind == 15u ? 0.3 * reach : 0.0);
   at = mix(low - rim, high + rim, 0.5 + 0.5 * square_corner(gl_VertexID));
-  float w = max(nearest - (grow > 1.0 ? min_pixels : 1.5) * mm_per_pixel, 0.001);
+  float w = max(nearest - (grow > 1.0 ? min_pixels : 1.5) * mm_per_pixel - over_plates_mm, 0.001);
   gl_Position = vec4(clip_from_pixels * at, depth_terms.x - depth_terms.y / w, 1.0);
 }
 )";

@@ -104,6 +104,7 @@ Result<void> ModelLayer::set_model(std::shared_ptr<const ModelSource> source) {
     table_.reset();
     return done;
   }
+  plates_.note(*changes);
   if (changes->topology || changes->visibility) visible_nodes_.reset();
   forget_visible_nodes();
   chunks_uploaded_ += changes->uploaded;
@@ -261,6 +262,8 @@ Result<void> ModelLayer::update_part_looks(bool damaged) {
   return part_looks_.update(*table_, damaged);
 }
 
+Result<void> ModelLayer::update_plates() { return table_ ? plates_.update(*table_) : Result<void>(); }
+
 const Instances& ModelLayer::marked(mesh::ShellIndex shell) {
   if (marked_shell_ == shell) return marked_;
   marked_shell_ = shell;
@@ -304,6 +307,7 @@ Result<ModelLayer::ShadowCaster> ModelLayer::shadow_caster() {
 
 std::size_t ModelLayer::bytes_uploaded() const {
   std::size_t bytes = model_glyphs_.instances.bytes_uploaded + preview_glyphs_.instances.bytes_uploaded + marked_.bytes_uploaded +
+<<<<<<< HEAD
                       contact_.bytes_uploaded() + cut_curves_.bytes_uploaded();
   for (const RowTexture* texture : row_textures()) bytes += texture->bytes_uploaded();
   return bytes;
@@ -328,6 +332,14 @@ std::size_t ModelLayer::bytes_for(const ModelSource& source) {
   const std::size_t nodes = source.size(SnapshotArray::positions), shells = source.size(SnapshotArray::shell_nodes);
   std::size_t bytes = RowTexture::bytes_for(nodes, kPositionTexel) + 2 * RowTexture::bytes_for(nodes, kOneIndex);  // and the selected ones
   bytes += RowTexture::bytes_for(shells, kFourIndices) + RowTexture::bytes_for(shells, kTwoIndices);
+=======
+                      contact_.bytes_uploaded() + cut_curves_.bytes_uploaded() + plates_.bytes_uploaded();
+  for (const RowTexture* texture :
+       {&textures_.positions(), &textures_.connectivity(), &textures_.surface(), &borders_.texture, &creases_.texture,
+        &line_elements_.texture, &selected_.texture(), &loose_.texture(), &preview_positions_, &preview_casting_.connectivity,
+        &selection_casting_.connectivity, &preview_edges_.texture})
+    bytes += texture->bytes_uploaded();
+>>>>>>> thick
   return bytes;
 }
 

@@ -14,6 +14,7 @@
 #include "kiosk/render/model_textures.h"
 #include "kiosk/render/outline.h"
 #include "kiosk/render/part_looks.h"
+#include "kiosk/render/plate_textures.h"
 #include "kiosk/render/preview_patch.h"
 #include "kiosk/render/selection_rows.h"
 #include "kiosk/render/shell_draws.h"
@@ -88,6 +89,9 @@ class ModelLayer {
   /// Updates the colours of parts by their state. After a change it costs a pass over the shells. Errors: no graphics memory.
   Result<void> update_part_looks(bool damaged);
   const PartLooks& part_looks() const { return part_looks_; }
+  /// Brings the plates up to date, as PlateTextures::update.
+  Result<void> update_plates();
+  const PlateTextures& plates() const { return plates_; }
   /// The frame around one shell of the model; no instance if the shell isn't visible.
   const Instances& marked(mesh::ShellIndex shell);
 
@@ -157,6 +161,7 @@ class ModelLayer {
   ContactMarks contact_;
   std::optional<CutPicture> cut_;
   FreeLines cut_curves_;
+  PlateTextures plates_;
   PartLooks part_looks_;
   bool part_looks_stale_ = true, part_looks_of_damage_ = false;
   Instances marked_;

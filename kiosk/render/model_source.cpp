@@ -22,6 +22,10 @@ class SnapshotSource final : public ModelSource {
   bool part_hidden(std::size_t part) const override {
     return part < hidden_.size() ? hidden_[part] != 0 : view_->info().parts[part].hidden;
   }
+  std::array<float, 2> part_thickness(std::size_t part) const override {
+    const ipc::SnapshotPart& its = view_->info().parts[part];
+    return {its.thinnest, its.thickest};
+  }
   std::uint64_t document_key() const override { return document_; }
 
  private:

@@ -1,6 +1,7 @@
 // Interface to the model that the renderer draws: a snapshot's arrays in chunks with versions.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -20,6 +21,8 @@ class ModelSource {
   virtual std::span<const std::byte> chunk_bytes(ipc::SnapshotArray array, std::size_t chunk) const = 0;
   virtual std::size_t part_count() const = 0;
   virtual bool part_hidden(std::size_t part) const = 0;
+  /// Of the part's thinnest and thickest shell, deck's length unit; 0 if not all have a thickness.
+  virtual std::array<float, 2> part_thickness(std::size_t part) const = 0;
   /// Differs between documents. Versions of two documents can't be compared.
   virtual std::uint64_t document_key() const = 0;
 

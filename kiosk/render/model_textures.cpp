@@ -193,6 +193,7 @@ void ModelTextures::update_shells(const ModelTable& table, ModelChanges& changes
       continue;
     }
     if (!known.known || known.nodes != nodes) changes.topology = true;
+    changes.reparted |= known.known && known.look[0] != look[0];
     known.known = true;
     known.nodes = nodes;
     known.look = look;

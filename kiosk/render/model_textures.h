@@ -13,6 +13,7 @@ namespace prismesh::kiosk::render {
 struct ModelChanges {
   bool topology = false;                     ///< shells, their nodes, or the number of nodes
   bool visibility = false;                   ///< hidden parts
+  bool reparted = false;                     ///< shells are in other parts
   std::vector<std::uint32_t> moved_chunks;   ///< of positions, ascending
   std::vector<std::uint32_t> marked_chunks;  ///< of nodes whose marks differ, ascending
   std::size_t uploaded = 0;                  ///< rows

@@ -113,7 +113,8 @@ struct Picture {
   std::array<FieldLook, 2> field{};  ///< by Pane
   std::optional<TwoViews> two_views;
   bool element_edges = true;
-  bool outlines = true;  ///< free edges and creases
+  bool outlines = true;    ///< free edges and creases
+  bool thickness = false;  ///< shells are plates with the thickness of their part
   bool quality_glyphs = true;
   bool damaged_only = false;               ///< glyphs and part states only of what the document's edits made worse
   std::optional<mesh::ShellIndex> marked;  ///< the shell that the view went to: a frame is drawn around it

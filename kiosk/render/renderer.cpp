@@ -38,8 +38,13 @@ struct DrawnScene {
   bool same_scene(const DrawnScene& other) const {
     const auto facts = [](const DrawnScene& d) {
       const Picture& p = d.picture;
+<<<<<<< HEAD
       return std::tie(p.view, p.profile.optics.pixel_pitch_mm, p.colour, p.element_edges, p.outlines, p.quality_glyphs, p.damaged_only,
                       p.marked, p.marked_point, p.selected_nodes, p.handle, p.cut_handle, p.pen, p.followed_edges, p.halfway_line,
+=======
+      return std::tie(p.view, p.profile.optics.pixel_pitch_mm, p.colour, p.element_edges, p.outlines, p.thickness, p.quality_glyphs,
+                      p.damaged_only, p.marked, p.marked_point, p.selected_nodes, p.handle, p.cut_handle, p.pen, p.followed_edges,
+>>>>>>> thick
                       p.measures, p.shadows, p.field, p.two_views, d.images, d.width, d.height, d.scene_version);
     };
     return facts(*this) == facts(other);
@@ -347,7 +352,7 @@ Result<void> Renderer::set_contact(ContactPicture picture) {
 Result<void> Renderer::set_cut(std::optional<CutPicture> cut) {
   ++impl_->scene_version;
   std::optional<CutPicture> beside = cut;
-  if (beside) beside->segments.clear();  // they are those of this model
+  if (beside) beside->segments = beside->beside;
   if (Result<void> done = impl_->other_layer.set_cut(std::move(beside)); !done) return done;
   return impl_->layer.set_cut(std::move(cut));
 }

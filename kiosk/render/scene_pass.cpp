@@ -1,6 +1,7 @@
 #include "kiosk/render/scene_pass.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "kiosk/render/glyph_levels.h"
@@ -46,6 +47,29 @@ class CutOff {
   bool on_;
 };
 
+constexpr int kFacesOfPlate = 6;
+
+/// Sets what the program of plates reads. Plates are closed, so that faces turned away needn't be drawn, until this goes out of scope;
+/// where a cut opens them, their inside is seen.
+class PlateFaces {
+ public:
+  PlateFaces(const gl::Program& program, const ModelLayer& model) {
+    const bool open = model.cut().has_value() && gl::has_clip_distance();
+    model.plates().rows().bind(unit::kPlates);
+    model.plates().thicknesses().bind(unit::kThicknesses);
+    program.set("plates", static_cast<int>(unit::kPlates));
+    program.set("thicknesses", static_cast<int>(unit::kThicknesses));
+    program.set("thick_parts", static_cast<int>(model.plates().part_count()));
+    program.set("show_inside", open ? 1 : 0);
+    glFrontFace(GL_CCW);
+    glCullFace(GL_BACK);
+    if (!open) glEnable(GL_CULL_FACE);
+  }
+  ~PlateFaces() { glDisable(GL_CULL_FACE); }
+  PlateFaces(const PlateFaces&) = delete;
+  PlateFaces& operator=(const PlateFaces&) = delete;
+};
+
 }  // namespace
 
 ScenePass::ScenePass(const Shaders& shaders)
@@ -54,6 +78,8 @@ ScenePass::ScenePass(const Shaders& shaders)
 Result<void> ScenePass::prepare(const Picture& picture, ModelLayer& model) {
   if (picture.colour == ColourMode::part_states)
     if (Result<void> looked = model.update_part_looks(picture.damaged_only); !looked) return looked;
+  if (picture.thickness)
+    if (Result<void> made = model.update_plates(); !made) return made;
   return picture.shadows ? shadows_.cast(model, picture.view) : Result<void>();
 }
 
@@ -187,15 +213,24 @@ void ScenePass::draw_opaque_and_transparent(const gl::Program& program, const Vi
 
 void ScenePass::draw_shells(const Picture& picture, const ViewContent& content, std::size_t moving_triangles, const Frame& frame) const {
   ShellDraws& draws = content.model.shell_draws();
-  set_shell_uniforms(shaders_.shells, picture, content, frame);
+  const gl::Program& program = picture.thickness ? shaders_.plates : shaders_.shells;
+  set_shell_uniforms(program, picture, content, frame);
+  FacesOfShell faces;
+  std::optional<PlateFaces> plate_faces;
+  if (picture.thickness) {
+    const PlateTextures& plates = content.model.plates();
+    faces = {kFacesOfPlate, 0.5 * kMaxPlateWay * plates.max_thickness()};
+    plate_faces.emplace(program, content.model);
+  }
   const Eigen::Matrix4d clip_from_model = frame.clip_from_model.cast<double>();
   if (!picture.moving || !draws.has_levels())
-    return draw_opaque_and_transparent(shaders_.shells, content, [&] { draws.draw_all(clip_from_model, frame.span); });
+    return draw_opaque_and_transparent(program, content, [&] { draws.draw_all(clip_from_model, faces, frame.span); });
   // The same for both eyes: from between them.
   const double pixels = picture.view.mm_per_unit * picture.between_eyes_mm.z() / frame.eye.mm_per_pixel;
   const Vec3 away = -stereo::screen_from_deck(picture.view).row(2).head<3>().transpose();  // mm in depth, which is compressed
   draws.choose({stereo::to_deck(picture.view, picture.between_eyes_mm), pixels, kNearestMm, away}, clip_from_model, moving_triangles);
-  draw_opaque_and_transparent(shaders_.shells, content, [&] { draws.draw_chosen_shells(); });
+  draw_opaque_and_transparent(program, content, [&] { draws.draw_chosen_shells(faces.count); });
+  plate_faces.reset();
   set_shell_uniforms(shaders_.coarse, picture, content, frame);
   draws.coarse().bind(unit::kCoarse);
   shaders_.coarse.set("coarse", static_cast<int>(unit::kCoarse));
@@ -231,7 +266,7 @@ void ScenePass::draw_items(const ModelLayer& model, const PaintTexture& paint, c
   paint.use(shaders_.items, false);
   shaders_.items.set("cut_plane", cut_plane(model));
   const CutOff cut(model);
-  model.shell_draws().draw_all(clip_from_model, span);
+  model.shell_draws().draw_all(clip_from_model, {}, span);
   glDisable(GL_DEPTH_TEST);
 }
 

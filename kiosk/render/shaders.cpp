@@ -40,11 +40,12 @@ void main() {
 
 // texel() gives the place of entry i in the model's textures. cut() keeps a vertex's distance from the plane above which the model is cut
 // away. nearer() moves a vertex toward the eye by `mm` in depth only; its place in
-// the picture stays.
+// the picture stays. `over_plates_mm`: by so much more, from a shell's mid-surface to before its outer face.
 const char* const kPull = R"(
 uniform sampler2D positions;
 uniform mat4 clip_from_model;
 uniform vec2 depth_terms;
+uniform float over_plates_mm;
 uniform vec4 cut_plane;
 #ifdef GL_EXT_clip_cull_distance
 void cut(vec3 at) { gl_ClipDistance[0] = dot(cut_plane, vec4(at, 1.0)); }
@@ -53,7 +54,7 @@ void cut(vec3 at) {}
 #endif
 ivec2 texel(uint i) { return ivec2(int(i & 4095u), int(i >> 12)); }
 vec4 nearer(vec4 clip, float mm) {
-  float w = max(clip.w - mm, 0.001);
+  float w = max(clip.w - mm - over_plates_mm, 0.001);
   return vec4(clip.xy, (depth_terms.x - depth_terms.y / w) * clip.w, clip.w);
 }
 )";
@@ -108,7 +109,18 @@ vec3 unpack_normal(uint halves) {
 #ifdef COARSE
 uniform usampler2D coarse;
 #endif
+#ifdef PLATES
+// Instances are the upper face, the lower one and four sides, each seen from outside. Corner 0 of a face is corner 0 of the shell, or of its
+// side, on the upper face.
+uniform usampler2D plates, thicknesses;
+uniform int thick_parts, show_inside;
+flat out float is_thick;
+vec3 way_of(uint word) { return vec3(ivec3(int(word << 22), int(word << 12), int(word << 2)) >> 22) / 256.0; }
+#endif
 void main() {
+#ifdef PLATES
+  is_thick = 0.0;
+#endif
 #ifdef COARSE
   uvec4 row = texelFetch(coarse, texel(uint(gl_VertexID / 3)), 0);
   uint shell = row.w;
@@ -132,10 +144,28 @@ void main() {
 #else
   uvec4 nodes = texelFetch(connectivity, texel(shell), 0);
 #endif
+#ifdef PLATES
+  float half_thick = part < uint(thick_parts) ? 0.5 * uintBitsToFloat(texelFetch(thicknesses, texel(part), 0).x) : 0.0;
+  uvec4 plate = half_thick > 0.0 ? texelFetch(plates, texel(shell), 0) : uvec4(0u);
+  int face = gl_InstanceID, side = face - 2;
+  if (face >= 2 && (node_of(plate, side) & 0x40000000u) == 0u) return;
+  if (face == 1 && half_thick == 0.0 && show_inside == 1) return;
+  is_thick = half_thick > 0.0 ? 1.0 : 0.0;
+  place = vec2(corner >= 2 ? 1.0 : 0.0, corner == 1 || corner == 2 ? 1.0 : 0.0);  // of a side
+  float up = face == 1 || (face >= 2 && place.y > 0.0) ? -half_thick : half_thick;
+  if (face == 1) corner = (4 - corner) & 3;
+  if (face >= 2) corner = corner < 2 ? side : (side + 1) & 3;
+  vec3 at = texelFetch(positions, texel(node_of(nodes, corner)), 0).xyz + up * way_of(node_of(plate, corner));
+#else
   vec3 at = texelFetch(positions, texel(node_of(nodes, corner)), 0).xyz;
+#endif
   cut(at);
   gl_Position = clip_from_model * vec4(at, 1.0);
   triangle = nodes.z == nodes.w ? 1.0 : 0.0;
+#ifdef PLATES
+  if (face >= 2) triangle = 0.0;
+  if (face < 2)
+#endif
 #ifdef COARSE
   place = vec2(0.5);  // no element edges
   triangle = 0.0;
@@ -144,6 +174,13 @@ void main() {
 #endif
 
   vec3 normal = unpack_normal(word.y);
+#ifdef PLATES
+  if (face >= 2) {
+    vec3 along = texelFetch(positions, texel(node_of(nodes, (side + 1) & 3)), 0).xyz - texelFetch(positions, texel(node_of(nodes, side)), 0).xyz;
+    vec3 across = cross(along, normal);
+    normal = across / max(length(across), 1e-30);
+  }
+#endif
   if (dot(normal, eye_in_model - at) < 0.0) normal = -normal;
   normal = screen_from_normal * normal;
   const vec3 kKey = vec3(-0.4369, 0.5825, 0.6854);
@@ -175,6 +212,10 @@ uniform float edge_strength;
 uniform float opacity;
 uniform sampler2D colour_map;
 uniform vec3 limits;  // start of the value range, 1 / its length, number of bands
+#ifdef PLATES
+flat in float is_thick;
+uniform int show_inside;
+#endif
 out vec4 colour;
 float cover(float distance, vec2 gradient) {
   gradient = gradient * texels_from_pixels;
@@ -201,6 +242,12 @@ void main() {
     if (limits.z > 0.0) share = (floor(min(share, 0.9999) * limits.z) + 0.5) / limits.z;
     painted = texture(colour_map, vec2((share * 255.0 + 0.5) / 256.0, 0.5)).rgb * shade;
   }
+#ifdef PLATES
+  if (show_inside == 1 && is_thick > 0.5 && !gl_FrontFacing) {  // a cut opens the plate: its inside is one darker tone
+    colour = vec4(0.55 * painted, opacity);
+    return;
+  }
+#endif
   colour = vec4(painted * (1.0 - edge_strength * edge * edge_share), opacity);
 }
 )";
@@ -301,10 +348,11 @@ Result<Shaders> Shaders::link() {
     std::string fragment;
   };
   const std::string& head = shader_head();
-  const std::string pull = head + kPull, shell = pull + kShellPull, flat = "#define FLAT\n";
+  const std::string pull = head + kPull, shell = pull + kShellPull, flat = "#define FLAT\n", plates = "#define PLATES\n";
   const Entry entries[] = {
       {&Shaders::ground, "ground", cover_vertex_shader(), head + kGroundFragment},
       {&Shaders::shells, "shells", shell + kPaint + kShellVertex, head + kShellFragment},
+      {&Shaders::plates, "plates", shell + plates + kPaint + kShellVertex, head + plates + kShellFragment},
       {&Shaders::coarse, "coarse triangles", shell + "#define COARSE\n" + kPaint + kShellVertex, head + kShellFragment},
       {&Shaders::items, "items", shell + kPaint + kItemVertex, head + kItemFragment},
       {&Shaders::lines, "lines", pull + kSquareCorner + kLineVertex, head + kLineFragment},

@@ -22,6 +22,8 @@ inline constexpr unsigned kField = 8;
 inline constexpr unsigned kColourMap = 9;
 inline constexpr unsigned kPaint = 10;
 inline constexpr unsigned kCoarse = 11;
+inline constexpr unsigned kPlates = 12;
+inline constexpr unsigned kThicknesses = 13;
 }  // namespace unit
 
 /// Version and precision: the start of every shader.
@@ -32,6 +34,7 @@ const std::string& cover_vertex_shader();
 struct Shaders {
   gl::Program ground;      ///< the background: one triangle over the whole image
   gl::Program shells;      ///< four vertices a shell, read from textures
+  gl::Program plates;      ///< the six faces of each shell's plate: the same vertices, an instance for each face
   gl::Program coarse;      ///< triangles that stand for shells, three vertices each
   gl::Program items;       ///< the same shells; the output is shell index + 1
   gl::Program lines;       ///< six vertices a line, read from textures; any width

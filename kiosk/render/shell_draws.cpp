@@ -55,9 +55,9 @@ class ViewVolume {
         planes_[static_cast<std::size_t>(2 * axis + (sign > 0 ? 0 : 1))] = length > 0 ? Eigen::Vector4d(plane / length) : plane;
       }
   }
-  bool may_hold(const mesh::lod::Sphere& sphere) const {
+  bool may_hold(const mesh::lod::Sphere& sphere, double reach = 0) const {
     return sphere.radius >= 0 && std::all_of(planes_.begin(), planes_.end(), [&](const Eigen::Vector4d& plane) {
-             return plane.head<3>().dot(sphere.centre) + plane.w() >= -sphere.radius;
+             return plane.head<3>().dot(sphere.centre) + plane.w() >= -sphere.radius - reach;
            });
   }
 
@@ -261,22 +261,28 @@ void ShellDraws::find_added() {
   added_ = mesh::lod::added_errors(made_->levels, by_cluster);
 }
 
-void ShellDraws::draw_all(const Eigen::Matrix4d& clip_from_model, DrawSpan& span) const {
+void ShellDraws::draw_all(const Eigen::Matrix4d& clip_from_model, const FacesOfShell& faces, DrawSpan& span) const {
   glBindVertexArray(all_array_.get());
   const ViewVolume volume(clip_from_model);
   std::size_t first = 0, last = 0;  // neighbours are drawn in one call
   std::vector<std::uint32_t> piece;
   const auto flush = [&] {
     const DrawSpan::Part now = span.take(last - first);
+<<<<<<< HEAD
     if (now.count == 0) return;
     if (order_in_pieces_)
       add_to_piece(first + now.first, now.count, piece);
     else
       glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(now.count * kCorners.size()), GL_UNSIGNED_INT,
                      reinterpret_cast<const void*>((first + now.first) * kCorners.size() * sizeof(std::uint32_t)));
+=======
+    if (now.count > 0)
+      glDrawElementsInstanced(GL_TRIANGLES, static_cast<GLsizei>(now.count * kCorners.size()), GL_UNSIGNED_INT,
+                              reinterpret_cast<const void*>((first + now.first) * kCorners.size() * sizeof(std::uint32_t)), faces.count);
+>>>>>>> thick
   };
   for (const Run& run : runs_) {
-    if (!run.shown || !volume.may_hold(run.bounds)) continue;
+    if (!run.shown || !volume.may_hold(run.bounds, faces.reach)) continue;
     if (run.first != last) {
       flush();
       first = run.first;
@@ -341,10 +347,10 @@ void ShellDraws::choose(const mesh::lod::Viewpoint& from, const Eigen::Matrix4d&
   upload(coarse_array_, coarse_list_, GL_STREAM_DRAW);
 }
 
-void ShellDraws::draw_chosen_shells() const {
+void ShellDraws::draw_chosen_shells(int faces) const {
   if (shell_list_.empty()) return;
   glBindVertexArray(shell_array_.get());
-  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(shell_list_.size()), GL_UNSIGNED_INT, nullptr);
+  glDrawElementsInstanced(GL_TRIANGLES, static_cast<GLsizei>(shell_list_.size()), GL_UNSIGNED_INT, nullptr, faces);
   glBindVertexArray(0);
 }
 

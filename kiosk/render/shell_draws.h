@@ -24,6 +24,12 @@ struct MadeLevels {
 /// The versions that MadeLevels::shell_versions holds.
 std::vector<std::uint64_t> shell_versions_of(const ModelSource& source);
 
+/// How often a shell is drawn, for the faces of its plate (gl_InstanceID), and how far these are from the shell at most (model's unit).
+struct FacesOfShell {
+  int count = 1;
+  double reach = 0;
+};
+
 class ShellDraws {
  public:
   ShellDraws();
@@ -48,12 +54,12 @@ class ShellDraws {
 
   /// Draws those in the span of all shells that may be seen, four vertices each: gl_VertexID is four times the shell, plus the corner. The
   /// program, the textures and their uniforms must be set.
-  void draw_all(const Eigen::Matrix4d& clip_from_model, DrawSpan& span) const;
+  void draw_all(const Eigen::Matrix4d& clip_from_model, const FacesOfShell& faces, DrawSpan& span) const;
   /// Chooses what is drawn for a viewpoint (deck's coordinates): the finest that has at most `triangles`. Shells whose sides are seen are
   /// drawn as they are as long as `triangles` allow it; then triangles are off by 1 to 8 pixels. Precondition: has_levels().
   void choose(const mesh::lod::Viewpoint& from, const Eigen::Matrix4d& clip_from_model, std::size_t triangles);
-  /// Draws the chosen shells as draw_all does.
-  void draw_chosen_shells() const;
+  /// Draws the chosen shells as draw_all does, so many faces of each.
+  void draw_chosen_shells(int faces) const;
   /// Draws the chosen coarse triangles: gl_VertexID is three times the row in `coarse()`, plus the corner.
   void draw_chosen_coarse() const;
   const RowTexture& coarse() const { return coarse_; }

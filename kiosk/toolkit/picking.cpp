@@ -28,6 +28,7 @@ render::Picture plain_picture(const PictureView& view) {
   picture.panel = view.panel;
   picture.colour = view.colour;
   picture.shadows = view.shadows;
+  picture.thickness = view.thickness;
   return picture;
 }
 
@@ -79,6 +80,15 @@ Pixel in_picked_view(const PictureView& view, const Pixel& pixel) {
   return left ? Pixel(pixel.x() + 2 * two_views(view).shift * view.size.width, pixel.y()) : pixel;
 }
 
+std::vector<Pixel> in_each_view(const PictureView& view, const Pixel& picked) {
+  if (!view.two_views) return {picked};
+  std::vector<Pixel> places;
+  const Pixel beside(picked.x() - 2 * two_views(view).shift * view.size.width, picked.y());
+  if (picked.x() > border_pixel(view)) places.push_back(picked);
+  if (beside.x() <= border_pixel(view)) places.push_back(beside);
+  return places;
+}
+
 bool is_pickable(const ToolContext& context, const Pixel& pixel) { return !context.shown.older && !is_beside(context.view, pixel); }
 
 std::optional<mesh::NodeIndex> node_at(const ToolContext& context, const Pixel& pixel) {
@@ -93,6 +103,18 @@ std::optional<mesh::NodeIndex> shown_node_at(const ToolContext& context, const P
 std::optional<mesh::ShellIndex> shell_at(const ToolContext& context, const std::optional<Pixel>& pixel) {
   const bool pickable = pixel && context.shown.snapshot && is_pickable(context, *pixel);
   return pickable ? context.renderer.shell_at(aim(context.view), *pixel) : std::nullopt;
+}
+
+bool is_out_of_sight(const PointedAt& pointed, const render::ModelSource& model) {
+  if (pointed.words.empty()) return false;
+  const std::size_t shells = model.size(ipc::SnapshotArray::shell_parts);
+  const auto hidden = [&](std::size_t shell) {
+    const std::size_t part = model.at<mesh::PartIndex>(ipc::SnapshotArray::shell_parts, shell).value;
+    return part < model.part_count() && model.part_hidden(part);
+  };
+  if (pointed.shell) return pointed.shell->value >= shells || hidden(pointed.shell->value);
+  if (!pointed.node) return false;
+  return pointed.node->value >= model.size(ipc::SnapshotArray::positions);
 }
 
 PointedAt pointed_at(const ToolContext& context, const std::optional<Pixel>& pixel) {

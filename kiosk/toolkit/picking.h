@@ -29,6 +29,10 @@ bool is_beside(const PictureView& view, const input::Pixel& pixel);
 /// The same place in the view that things are picked in.
 input::Pixel in_picked_view(const PictureView& view, const input::Pixel& pixel);
 
+/// Where a point of the view that things are picked in is seen: there, and in the left one of two views; only places that lie in their
+/// view.
+std::vector<input::Pixel> in_each_view(const PictureView& view, const input::Pixel& picked);
+
 /// Whether something can be picked at a pixel.
 bool is_pickable(const ToolContext& context, const input::Pixel& pixel);
 /// The visible node nearest to a pixel; nothing within reach: none. May be newer than the shown snapshot.
@@ -41,6 +45,8 @@ std::optional<mesh::ShellIndex> shell_at(const ToolContext& context, const std::
 /// What is under the pointer, in words too.
 /// Whether an element uses the node. Costs a pass over the elements.
 bool is_used(const ToolContext& context, mesh::NodeIndex node);
+/// Whether what was pointed at isn't in the model any more, or is hidden now.
+bool is_out_of_sight(const PointedAt& pointed, const render::ModelSource& model);
 PointedAt pointed_at(const ToolContext& context, const std::optional<input::Pixel>& pixel);
 
 /// The node with an id, also one that an edit removed; nothing if the shown snapshot hasn't got it. Costs a pass over the ids.

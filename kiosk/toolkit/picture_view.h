@@ -28,6 +28,7 @@ struct PictureView {
   bool two_views = false;  ///< the picture has two views side by side
   render::ColourMode colour = render::ColourMode::parts;
   bool shadows = false;
+  bool thickness = false;  ///< shells are drawn as plates
 };
 
 }  // namespace prismesh::kiosk::toolkit

@@ -189,11 +189,32 @@ std::optional<double> least_of(const Model& model, const std::vector<PartIndex>&
   return least;
 }
 
+/// Errors: the diameter exceeds a sheet.
+Result<void> check_diameter(const Document& document, double diameter, const std::vector<PartIndex>& parts, const Model& model) {
+  std::vector<Eigen::AlignedBox3d> boxes(parts.size());
+  for (std::size_t s = 0; s < model.shell_count(); ++s) {
+    const auto part = std::lower_bound(parts.begin(), parts.end(), model.shell_parts[s]);
+    if (part == parts.end() || *part != model.shell_parts[s] || !model.shell_nodes[s].node[0].valid()) continue;
+    for (const NodeIndex node : model.shell_nodes[s].node)
+      boxes[static_cast<std::size_t>(part - parts.begin())].extend(model.position(node));
+  }
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    if (boxes[p].isEmpty()) continue;
+    const double size = boxes[p].diagonal().norm();
+    const std::string unit(name(document.settings.length_unit));
+    if (diameter > size)
+      return fail("", "weld: the diameter of " + readable(diameter, 4) + " " + unit + " is larger than the sheet " +
+                          sheet_part_words(model, parts[p]) + ", which is " + readable(size, 4) + " " + unit + " long");
+  }
+  return {};
+}
+
 /// Makes a part for the welds, as the format has it. `parts`: of the sheets, ascending.
 Result<WeldKind> make_part(const Document& document, const Weld& edit, const std::vector<PartIndex>& parts, Generation& next) {
   if (!edit.diameter)
     return fail("", "weld: \"like\" or \"diameter\" is missing: an existing weld to copy (\"beam:9\"), or the diameter of a new section");
   Model& model = next.model;
+  if (Result<void> fits = check_diameter(document, *edit.diameter, parts, model); !fits) return fail(fits.error());
   deck::CardWriter::WeldPart wanted;
   wanted.diameter = *edit.diameter;
   for (const PartIndex part : parts) wanted.sheets.push_back((*model.parts)[part.value].id);

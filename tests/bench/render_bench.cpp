@@ -311,6 +311,34 @@ void nodes_moved(benchmark::State& state) {
 }
 BENCHMARK(nodes_moved)->ArgName("step")->Arg(0)->Arg(100)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 
+/// A picture at rest of a million shells with their thickness, after an edit of 10,000 neighbouring nodes. `first_ms`: the processor's time
+/// for the plates and the first picture. Argument: 0: as surfaces, 1: as plates.
+void plates(benchmark::State& state) {
+  Stage stage(0, "mono", 1);
+  const std::shared_ptr<test::TestSource> source = million(0);
+  source->thickness = {{5, 5}};
+  stage.picture.moving = false;
+  stage.picture.thickness = state.range(0) == 1;
+  MonotonicClock clock;
+  const std::int64_t start = clock.now_ns();
+  (void)stage.renderer->set_model(std::make_shared<test::TestSource>(*source));
+  benchmark::DoNotOptimize(stage.renderer->draw(stage.picture, stage.target.framebuffer(), kWidth, kHeight));
+  glFinish();
+  state.counters["first_ms"] = static_cast<double>(clock.now_ns() - start) * 1e-6;
+  for (auto _ : state) {
+    state.PauseTiming();
+    for (std::size_t k = 0; k < 10'000; ++k) source->positions[400'000 + k].z() += 1;
+    for (std::size_t c = 400'000 / mesh::kChunkSize; c <= 410'000 / mesh::kChunkSize; ++c) source->touch(ipc::SnapshotArray::positions, c);
+    const auto next = std::make_shared<test::TestSource>(*source);
+    state.ResumeTiming();
+    benchmark::DoNotOptimize(stage.renderer->set_model(next));
+    benchmark::DoNotOptimize(stage.renderer->draw(stage.picture, stage.target.framebuffer(), kWidth, kHeight));
+    glFinish();
+  }
+  state.SetLabel(reinterpret_cast<const char*>(glGetString(GL_RENDERER)));
+}
+BENCHMARK(plates)->ArgName("plates")->Arg(0)->Arg(1)->Iterations(3)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+
 /// From a snapshot in which an edit has changed the quality of 10,000 shells to the picture with their glyphs, with the view unchanged.
 /// `taking_s` is the processor time until the renderer has the snapshot, the rest is drawing. Arguments: percentage of shells that warn;
 /// whether the edit made and removed shells (1), or moved nodes (0).

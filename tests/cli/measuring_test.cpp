@@ -32,6 +32,21 @@ TEST_F(Cli, measure_says_distance_angle_and_radius) {
   EXPECT_TRUE(prismesh({"measure", deck, "1", "11", "21", "--json"}).json()["circle"].is_null());
 }
 
+TEST_F(Cli, measure_and_cross_section_say_that_the_unit_is_guessed) {
+  const std::string deck = write("strip.k", bent_strip());
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"measure", deck, "1", "31"}, {"cross-section", deck, "--plane", "5,0,0,1,0,0"}}) {
+    const Outcome guessed = prismesh(command);
+    EXPECT_EQ(guessed.status, kDone) << guessed.err;
+    EXPECT_THAT(guessed.err, HasSubstr("strip.k: note: guessed length unit mm; set with --length-unit")) << command[0];
+    std::vector<std::string> given = command;
+    given.insert(given.end(), {"--length-unit", "m"});
+    const Outcome said = prismesh(given);
+    EXPECT_EQ(said.status, kDone) << said.err;
+    EXPECT_THAT(said.err, Not(HasSubstr("guessed")));
+  }
+}
+
 TEST_F(Cli, measure_refuses_a_node_that_isnt_there) {
   const std::string deck = write("strip.k", bent_strip());
   const Outcome outcome = prismesh({"measure", deck, "1", "33"});

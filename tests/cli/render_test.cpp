@@ -52,6 +52,22 @@ TEST_F(Render, writes_a_png_of_the_size_asked_for) {
   EXPECT_NE(read(path("a.png")), png) << "selected nodes show";
 }
 
+TEST_F(Render, draws_shells_with_their_thickness_and_says_which_have_none) {
+  ASSERT_EQ(draw({"--view", "front", "--profile", "mono"}).status, kDone) << said_;
+  const std::string surfaces = read(path("a.png"));
+  ASSERT_EQ(draw({"--view", "front", "--profile", "mono", "--thickness"}).status, kDone) << said_;
+  EXPECT_EQ(read(path("a.png")), surfaces);
+  EXPECT_THAT(said_, HasSubstr("1 part with shells without thickness is drawn as surfaces"));
+  deck_ = write("thick.k", "*KEYWORD\n*PART\nplate\n         1         1\n*SECTION_SHELL\n         1         2\n       2.0\n*NODE\n" +
+                               node_card(1, 0, 0, 0) + node_card(2, 10, 0, 0) + node_card(3, 10, 10, 0) + node_card(4, 0, 10, 0) +
+                               "*ELEMENT_SHELL\n" + shell_card(1, 1, 1, 2, 3, 4) + "*END\n");
+  ASSERT_EQ(draw({"--view", "front", "--profile", "mono"}).status, kDone) << said_;
+  const std::string thin = read(path("a.png"));
+  ASSERT_EQ(draw({"--view", "front", "--profile", "mono", "--thickness"}).status, kDone) << said_;
+  EXPECT_NE(read(path("a.png")), thin);
+  EXPECT_THAT(said_, Not(HasSubstr("without thickness")));
+}
+
 TEST_F(Render, wrong_usage_lists_what_there_is) {
   const std::pair<std::vector<std::string>, const char*> wrong[] = {{{"--view", "sideways"}, "front, back, left, right, top, bottom, iso"},
                                                                     {{"--profile", "tv"}, "prism-mask, prism-mask-columns"},

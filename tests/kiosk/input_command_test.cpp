@@ -187,6 +187,7 @@ TEST(KeysTest, rows_keep_the_order_of_help_and_menu) {
                                              "7",
                                              "Q",
                                              "Y",
+                                             "Shift+Q",
                                              "P",
                                              "Z",
                                              "X",

@@ -91,6 +91,29 @@ TEST_F(CutPictures, the_curves_are_drawn_on_the_cut_itself) {
   EXPECT_LT(int{before[2]}, before[0] + 60);
 }
 
+TEST_F(CutPictures, each_of_two_views_has_the_curves_of_its_model) {
+  ASSERT_TRUE(renderer_->set_other(std::make_shared<TestSource>(two_plates())));
+  picture_.two_views = TwoViews{};
+  picture_.view = stereo::zoom(picture_.view, 0.5, {0, 0});
+  const auto blue_in = [&](bool right) {
+    const Image image = draw(picture_, kCutWidth, kCutHeight);
+    int blue = 0;
+    for (int y = 0; y < kCutHeight; ++y)
+      for (int x = right ? kCutWidth / 2 : 0; x < (right ? kCutWidth : kCutWidth / 2); ++x)
+        blue += image.at(x, y)[2] > image.at(x, y)[0] + 60 ? 1 : 0;
+    return blue;
+  };
+  const std::vector<std::array<Vec3, 2>> curve{{Vec3(5, -30, 20), Vec3(5, 30, 20)}};
+  cut({5, 0, 0}, Vec3::UnitX());
+  const int right = blue_in(true), left = blue_in(false);  // what is seen of the blue part
+  cut({5, 0, 0}, Vec3::UnitX(), curve);
+  EXPECT_GT(blue_in(true), right + 20);
+  EXPECT_EQ(blue_in(false), left);
+  ASSERT_TRUE(renderer_->set_cut(CutPicture{{5, 0, 0}, Vec3::UnitX(), {}, curve}));
+  EXPECT_EQ(blue_in(true), right);
+  EXPECT_GT(blue_in(false), left + 20);
+}
+
 /// The matrix that an outline is sent with has the cut in the place of a plane of the view: the model server then selects what is seen.
 TEST_F(CutPictures, an_outline_takes_what_the_cut_leaves) {
   const TestSource source = two_plates();

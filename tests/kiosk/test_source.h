@@ -1,6 +1,7 @@
 // Model source for the renderer's tests: arrays with versions, as in a snapshot.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -23,6 +24,7 @@ class TestSource final : public kiosk::render::ModelSource {
   std::vector<mesh::NodeIndex> line_nodes;
   std::vector<mesh::PartIndex> line_parts;
   std::vector<bool> hidden;
+  std::vector<std::array<float, 2>> thickness;  ///< by part; parts beyond its end have none
   std::uint64_t key = 1;
   std::vector<ipc::SnapshotCluster> clusters;
 
@@ -65,6 +67,9 @@ class TestSource final : public kiosk::render::ModelSource {
   }
   std::size_t part_count() const override { return hidden.size(); }
   bool part_hidden(std::size_t part) const override { return hidden[part]; }
+  std::array<float, 2> part_thickness(std::size_t part) const override {
+    return part < thickness.size() ? thickness[part] : std::array<float, 2>{};
+  }
   std::uint64_t document_key() const override { return key; }
 
  private:

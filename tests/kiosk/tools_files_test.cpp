@@ -158,6 +158,17 @@ TEST_F(PathBox, is_used_by_arrow_keys_tab_and_enter) {
   EXPECT_EQ(press(display::Key::enter), folder_ / "door.rad");
 }
 
+TEST_F(PathBox, takes_a_path_from_the_root_that_is_typed_behind_the_folder) {
+  EXPECT_EQ(before_absolute_path("/work/deck.k"), 0U);
+  EXPECT_EQ(before_absolute_path("/work//tmp/x"), 6U);
+  EXPECT_EQ(before_absolute_path("//tmp//a//b"), 9U);
+  open(folder_ / "car.k");
+  type("includes/");
+  EXPECT_EQ(entry_.typed, folder_ / "includes/");
+  type("/etc");
+  EXPECT_EQ(entry_.typed, "/etc");
+}
+
 TEST_F(PathBox, is_used_by_clicks) {
   open(folder_ / "car.k");
   EXPECT_EQ(click(folder_ / "includes/"), std::nullopt);

@@ -61,6 +61,7 @@ class Sheet final : public render::ModelSource {
   }
   std::size_t part_count() const override { return 1; }
   bool part_hidden(std::size_t) const override { return false; }
+  std::array<float, 2> part_thickness(std::size_t) const override { return {}; }
   std::uint64_t document_key() const override { return 1; }
 
  private:

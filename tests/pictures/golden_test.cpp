@@ -130,6 +130,16 @@ TEST_F(GoldenPicture, prism_mask_from_the_side) {
   compare("prism_mask_from_the_side", draw(picture, kWidth, kHeight));
 }
 
+TEST_F(GoldenPicture, shells_with_their_thickness) {
+  test::TestSource source = model();
+  source.thickness = {{4, 4}, {2, 2}};
+  source.hidden[2] = true;  // which stands before the open end
+  show(source);
+  Picture picture = fitted("mono", "iso", kWidth, kHeight);
+  picture.thickness = true;
+  compare("thickness", draw(nearer(picture, {140, -10, 30}, 2.2), kWidth, kHeight));
+}
+
 TEST_F(GoldenPicture, crosstalk_compensated) {
   show(model());
   Picture picture = fitted("prism-mask", "iso", kWidth, kHeight);

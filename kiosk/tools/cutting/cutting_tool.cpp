@@ -121,6 +121,35 @@ void CuttingTool::model_changed() {
   if (plane_) cut();
 }
 
+namespace {
+
+/// Differ if another model, or another state of it, is shown. Empty: none is.
+std::vector<std::uint64_t> versions_of(const render::ModelSource* model) {
+  using ipc::SnapshotArray;
+  if (model == nullptr) return {};
+  std::vector<std::uint64_t> versions{model->document_key()};
+  for (const SnapshotArray array : {SnapshotArray::positions, SnapshotArray::shell_nodes, SnapshotArray::shell_parts})
+    for (std::size_t c = 0; c < model->chunk_count(array); ++c) versions.push_back(model->chunk_version(array, c));
+  for (std::size_t p = 0; p < model->part_count(); ++p) versions.push_back(model->part_hidden(p) ? 1 : 0);
+  return versions;
+}
+
+std::vector<std::array<Vec3, 2>> segments_of(const mesh::measure::CrossSection& section) {
+  std::vector<std::array<Vec3, 2>> segments;
+  for (const mesh::measure::SectionCurve& curve : section.curves) {
+    const std::vector<Vec3>& points = curve.points;
+    for (std::size_t i = 0; i + 1 < points.size(); ++i) segments.push_back({points[i], points[i + 1]});
+    if (curve.closed) segments.push_back({points.back(), points.front()});
+  }
+  return segments;
+}
+
+}  // namespace
+
+void CuttingTool::look(std::int64_t) {
+  if (plane_ && versions_of(context_.renderer.other()) != beside_versions_) cut();
+}
+
 void CuttingTool::cut() {
   ++context_.changes;
   length_ = 0;
@@ -135,14 +164,19 @@ void CuttingTool::cut() {
     if (section) {
       length_ = section->length;
       shells_ = section->shells;
-      for (const mesh::measure::SectionCurve& curve : section->curves) {
-        const std::vector<Vec3>& points = curve.points;
-        for (std::size_t i = 0; i + 1 < points.size(); ++i) picture->segments.push_back({points[i], points[i + 1]});
-        if (curve.closed) picture->segments.push_back({points.back(), points.front()});
-      }
+      picture->segments = segments_of(*section);
     }
   } else {
     copy_.clear();
+  }
+  const render::ModelSource* other = picture ? context_.renderer.other() : nullptr;
+  beside_versions_ = versions_of(other);
+  if (other != nullptr) {
+    beside_.update(*other);
+    const auto section = mesh::measure::cross_section(beside_.model(), {plane_->point, plane_->normal()}, beside_.hidden());
+    if (section) picture->beside = segments_of(*section);
+  } else {
+    beside_.clear();
   }
   if (const Result<void> done = context_.renderer.set_cut(std::move(picture)); !done)
     context_.notices.say(notices::Notice::Kind::error, done.error().text());

@@ -27,6 +27,7 @@ class CuttingTool final : public toolkit::Tool,
                           public toolkit::HasMode,
                           public toolkit::TakesBack,
                           public toolkit::FollowsView,
+                          public toolkit::MovesView,
                           public toolkit::InRail,
                           public toolkit::HasOptions,
                           public toolkit::HasDialogs,
@@ -51,6 +52,8 @@ class CuttingTool final : public toolkit::Tool,
   bool take_back() override;
   void view_moved(const toolkit::Pointer& pointer) override;
   void model_changed() override;
+  /// Cuts anew if the other view shows another model. The view stays.
+  void look(std::int64_t now_ns) override;
   void document_changed() override { set_plane(std::nullopt); }
   void add_to_picture(render::Picture& picture) const override;
   std::string_view panel_name() const override { return "cut"; }
@@ -92,7 +95,9 @@ class CuttingTool final : public toolkit::Tool,
   toolkit::ToolContext& context_;
   std::optional<CutPlane> plane_;
   std::optional<Dragged> drag_;
-  render::ModelCopy copy_;  ///< of the shown model; empty: nothing is cut
+  render::ModelCopy copy_;    ///< of the shown model; empty: nothing is cut
+  render::ModelCopy beside_;  ///< of the model in the other view
+  std::vector<std::uint64_t> beside_versions_;
   double length_ = 0;       ///< of the curves
   std::size_t shells_ = 0;  ///< that are cut
   panels::EntryState entry_;

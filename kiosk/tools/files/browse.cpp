@@ -119,4 +119,9 @@ std::vector<RecentDeck> recent_decks(std::span<const std::string> lines, std::si
   return decks;
 }
 
+std::size_t before_absolute_path(std::string_view typed) {
+  const std::size_t slashes = typed.rfind("//");
+  return slashes == std::string_view::npos ? 0 : slashes + 1;
+}
+
 }  // namespace prismesh::kiosk::tools::files

@@ -33,7 +33,14 @@ Browsed browse(const std::string& typed, bool all);
 bool is_deck_name(std::string_view name);
 
 /// Beside a deck, the first name for a copy that isn't there yet: "car_copy.k", "car_copy_2.k". Endings of packed decks stay.
+/// How many bytes of a typed text a path from the root takes the place of: those before the last "//". A path typed behind the folder that
+/// stands in the field is meant so, as shells and editors do it.
+std::size_t before_absolute_path(std::string_view typed);
 std::string copy_name(const std::string& deck);
+
+/// How many bytes of a typed text a path from the root takes the place of: those before the last slash of the last "//". A path typed
+/// behind the folder that stands in the field is meant so, as in shells and editors.
+std::size_t before_absolute_path(std::string_view typed);
 
 /// A deck that was open before.
 struct RecentDeck {

@@ -51,7 +51,12 @@ int by_key(ImGuiInputTextCallbackData* data) {
       else if (entry.chosen)
         entry.chosen = *entry.chosen > 0 ? std::optional(*entry.chosen - 1) : std::nullopt;
       break;
-    default: entry.chosen.reset(); break;  // edited
+    default: {  // edited
+      entry.chosen.reset();
+      const std::string_view typed(data->Buf, static_cast<std::size_t>(data->BufTextLen));
+      if (const std::size_t before = before_absolute_path(typed); before > 0) data->DeleteChars(0, static_cast<int>(before));
+      break;
+    }
   }
   return 0;
 }

@@ -130,7 +130,7 @@ void MeasuringTool::add_to_picture(render::Picture& picture) const {
   const auto& shown = context_.shown.snapshot;
   if (!shown || context_.shown.older) return;
   const auto add = [&](const Measure& measure) {
-    if (measure.nodes.empty()) return;
+    if (measure.nodes.empty() || is_cut_away(measure)) return;
     std::vector<mesh::Vec3>& way = picture.measures.emplace_back();
     for (const mesh::NodeIndex node : measure.nodes)
       if (node.value < shown->node_count()) way.push_back(shown->position(node.value));
@@ -139,9 +139,19 @@ void MeasuringTool::add_to_picture(render::Picture& picture) const {
   add(list_.begun());
 }
 
+/// Whether one of its nodes is: without what it measures a line would hang in the air.
+bool MeasuringTool::is_cut_away(const Measure& measure) const {
+  const auto& shown = context_.shown.snapshot;
+  const std::optional<render::CutPicture>& cut = context_.renderer.cut();
+  if (!shown || !cut || !render::Renderer::can_cut()) return false;
+  return std::ranges::any_of(measure.nodes, [&](mesh::NodeIndex node) {
+    return node.value < shown->node_count() && cut->takes_away(shown->position(node.value));
+  });
+}
+
 std::optional<input::Pixel> MeasuringTool::label_at(const Measure& measure) const {
   const auto& shown = context_.shown.snapshot;
-  if (!shown || context_.shown.older || measure.nodes.empty()) return std::nullopt;
+  if (!shown || context_.shown.older || measure.nodes.empty() || is_cut_away(measure)) return std::nullopt;
   for (const mesh::NodeIndex node : measure.nodes)
     if (node.value >= shown->node_count()) return std::nullopt;
   const mesh::Vec3 at = measure.nodes.size() == kOfAngle
@@ -158,15 +168,18 @@ void MeasuringTool::draw_over_picture(PanelLayout& layout) {
   const auto in_view = [&](const input::Pixel& at) {
     return at.x() >= view.x && at.x() < view.right() && at.y() >= view.y && at.y() < view.bottom();
   };
-  for (const Measure& measure : list_.all()) {
-    const std::optional<input::Pixel> at = label_at(measure);
-    const std::string label = measure_label(measure, unit);
-    if (!at || label.empty() || !in_view(*at)) continue;
-    const ImVec2 size = ImGui::CalcTextSize(label.c_str());
-    const ImVec2 from(std::round(static_cast<float>(at->x()) + panels::kGrid), std::round(static_cast<float>(at->y()) - size.y / 2));
-    list.AddRectFilled(ImVec2(from.x - panels::kGrid / 2, from.y), ImVec2(from.x + size.x + panels::kGrid / 2, from.y + size.y),
-                       panels::kPanelColour);
-    list.AddText(from, panels::kInk, label.c_str());
+  for (std::size_t i = 0; i < list_.all().size(); ++i) {
+    const std::optional<input::Pixel> found = label_at(list_.all()[i]);
+    const std::string label = measure_label(list_.all()[i], unit);
+    if (!found || label.empty()) continue;
+    for (const input::Pixel& at : toolkit::in_each_view(context_.view, *found)) {
+      if (!in_view(at)) continue;
+      const ImVec2 size = ImGui::CalcTextSize(label.c_str());
+      const ImVec2 from(std::round(static_cast<float>(at.x()) + panels::kGrid), std::round(static_cast<float>(at.y()) - size.y / 2));
+      list.AddRectFilled(ImVec2(from.x - panels::kGrid / 2, from.y), ImVec2(from.x + size.x + panels::kGrid / 2, from.y + size.y),
+                         panels::kPanelColour);
+      list.AddText(from, panels::kInk, label.c_str());
+    }
   }
 }
 
@@ -220,7 +233,11 @@ void MeasuringTool::draw_panel(PanelLayout& layout) {
     panels::note_item(layout, "measure " + std::to_string(i + 1), measure_label(measure, unit));
     ImGui::SameLine();
     panels::elided_text(measure_label(measure, unit), ImGui::GetWindowContentRegionMax().x - ImGui::GetCursorPosX());
+    ImGui::PushTextWrapPos(0);  // three ids of eight digits don't fit in a line
     ImGui::TextDisabled("%s", measure_title(measure).c_str());
+    panels::note_item(layout, "measure nodes " + std::to_string(i + 1), measure_title(measure));
+    ImGui::PopTextWrapPos();
+    if (is_cut_away(measure)) ImGui::TextDisabled("cut away: not in the picture");
     for (const std::string& detail : measure_details(measure, unit)) ImGui::TextDisabled("%s", detail.c_str());
     ImGui::PopID();
   }

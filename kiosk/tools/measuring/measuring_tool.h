@@ -53,6 +53,7 @@ class MeasuringTool final : public toolkit::Tool,
   void clear();
   /// Where a measure's label stands in the picture: at the middle of its way. Nothing: behind the eye, or its nodes aren't there.
   std::optional<input::Pixel> label_at(const Measure& measure) const;
+  bool is_cut_away(const Measure& measure) const;
 
   toolkit::ToolContext& context_;
   MeasureList list_;

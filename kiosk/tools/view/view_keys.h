@@ -30,6 +30,7 @@ enum class ViewCommand : std::uint8_t {
   wider_comfort,
   narrower_comfort,
   fit_model,
+  thickness,
 };
 
 constexpr input::Command command_of(ViewCommand command) { return {kName, static_cast<std::uint8_t>(command)}; }
@@ -50,6 +51,8 @@ inline constexpr std::array kKeys = {
                       "colour by part, by quality, or parts by their state"},
     input::KeyBinding{display::letter('Y'), false, false, command_of(ViewCommand::shadows), input::Menu::view, "Y",
                       "shadows of the pulled surface beside the model, or none"},
+    input::KeyBinding{display::letter('Q'), false, true, command_of(ViewCommand::thickness), input::Menu::view, "Shift+Q",
+                      "draw shells with their thickness, as plates, or as surfaces"},
     input::KeyBinding{display::letter('P'), false, false, command_of(ViewCommand::next_profile), input::Menu::display, "P",
                       "next display profile"},
     input::KeyBinding{display::letter('Z'), false, false, command_of(ViewCommand::selection_to_plane), input::Menu::display, "Z",

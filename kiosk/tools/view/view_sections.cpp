@@ -82,6 +82,17 @@ std::optional<std::string> picture_section(const std::string& colours, const std
   return chosen;
 }
 
+void thickness_section(bool thickness, const std::string& note, PanelLayout& layout) {
+  panels::setting("shells as", thickness ? "plates" : "surfaces", input::binding_of(kKeys, command_of(ViewCommand::thickness)), layout);
+  if (note.empty()) return;
+  ImGui::PushFont(small_font());
+  ImGui::PushTextWrapPos(0);
+  ImGui::TextUnformatted(printable(note).c_str());
+  ImGui::PopTextWrapPos();
+  ImGui::PopFont();
+  panels::note_item(layout, "thickness note", note);
+}
+
 std::optional<std::string> profile_entries(const std::string& now, const std::vector<std::string>& profiles, PanelLayout& layout) {
   std::optional<std::string> chosen;
   ImGui::Separator();

@@ -14,6 +14,8 @@ namespace prismesh::kiosk::tools::view {
 /// chose one.
 std::optional<std::string> picture_section(const std::string& colours, const std::string& profile, const std::vector<std::string>& profiles,
                                            panels::PanelLayout& layout);
+/// Lays out whether shells are drawn with their thickness, and what the picture doesn't show of it.
+void thickness_section(bool thickness, const std::string& note, panels::PanelLayout& layout);
 /// The profiles as entries of a menu or list.
 std::optional<std::string> profile_entries(const std::string& now, const std::vector<std::string>& profiles, panels::PanelLayout& layout);
 

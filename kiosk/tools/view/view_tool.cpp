@@ -8,7 +8,11 @@
 #include "kiosk/toolkit/model_boxes.h"
 #include "kiosk/toolkit/picking.h"
 #include "kiosk/toolkit/tool_set.h"
+<<<<<<< HEAD
 #include "kiosk/tools/view/colour_key.h"
+=======
+#include "kiosk/toolkit/words_on_thickness.h"
+>>>>>>> thick
 #include "kiosk/tools/view/view_keys.h"
 
 namespace prismesh::kiosk::tools::view {
@@ -49,6 +53,7 @@ void ViewTool::command(std::uint8_t number, const toolkit::Pointer&) {
     case ViewCommand::oblique: look_from("iso"); break;
     case ViewCommand::colour_mode: next_colours(); break;
     case ViewCommand::shadows: context_.view.shadows = !context_.view.shadows; break;
+    case ViewCommand::thickness: turn_thickness(); break;
     case ViewCommand::next_profile: next_profile(); break;
     case ViewCommand::selection_to_plane: toolkit::bring_selection(context_); break;
     case ViewCommand::keep_selection_in_plane: keep_selection(!depth.keeps_selection()); break;
@@ -142,6 +147,17 @@ void ViewTool::next_colours() {
   colour = colour == ColourMode::parts ? ColourMode::quality : colour == ColourMode::quality ? ColourMode::part_states : ColourMode::parts;
 }
 
+void ViewTool::turn_thickness() {
+  context_.view.thickness = !context_.view.thickness;
+  context_.trace.line(context_.view.thickness ? "thickness on" : "thickness off");
+}
+
+/// What the picture doesn't show of the thickness; empty: it shows all.
+std::string ViewTool::words_on_thickness() const {
+  const auto& shown = context_.shown.snapshot;
+  return context_.view.thickness && shown ? toolkit::words_on_thickness(shown->info().parts) : std::string();
+}
+
 void ViewTool::next_profile() {
   const std::vector<std::string> names = profile_names();
   const auto current = std::ranges::find(names, context_.view.profile.name);
@@ -187,6 +203,7 @@ void ViewTool::draw_tab(PanelLayout& layout) {
   const char* own = context_.view.colour == render::ColourMode::quality       ? "quality"
                     : context_.view.colour == render::ColourMode::part_states ? "parts' state"
                                                                               : "part";
+  thickness_section(context_.view.thickness, words_on_thickness(), layout);
   if (const auto chosen = picture_section(others.empty() ? own : others, context_.view.profile.name, profile_names(), layout))
     layout.ask([this, name = *chosen] { take_profile(name); });
   stereo_sections(stereo_facts(), layout);

@@ -46,6 +46,8 @@ class ViewTool final : public toolkit::Tool,
   void fit_model();
   void set_view(const stereo::View& view);
   void next_colours();
+  void turn_thickness();
+  std::string words_on_thickness() const;
   void next_profile();
   void take_profile(const std::string& name);
   void keep_selection(bool keep);

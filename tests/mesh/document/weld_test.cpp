@@ -314,6 +314,15 @@ TEST_F(WeldEdit, keeps_the_layout_of_its_example) {
                           "               90002                  90               80003               80004"));
 }
 
+TEST_F(WeldEdit, refuses_a_diameter_larger_than_a_sheet) {
+  Document document = deck(2, "");
+  for (const char* diameter : {"1e30", "500"})
+    EXPECT_THAT(refusal(document, R"({"edit": "weld", "points": [[60, 10, 0]], "diameter": )" + std::string(diameter) + "}"),
+                AllOf(HasSubstr("is larger than the sheet part:1"), HasSubstr(" mm long")));
+  EXPECT_EQ(beams(document).size(), 0u);
+  weld(document, R"({"edit": "weld", "points": [[60, 10, 0]], "diameter": 8, "yield_stress": 300})");
+}
+
 TEST_F(WeldEdit, says_which_sheets_the_contact_of_its_example_does_not_name) {
   const std::string by_parts =
       kOneWeld.substr(0, kOneWeld.find("*SET_PART_LIST")) +
