@@ -307,8 +307,7 @@ Result<ModelLayer::ShadowCaster> ModelLayer::shadow_caster() {
 
 std::size_t ModelLayer::bytes_uploaded() const {
   std::size_t bytes = model_glyphs_.instances.bytes_uploaded + preview_glyphs_.instances.bytes_uploaded + marked_.bytes_uploaded +
-<<<<<<< HEAD
-                      contact_.bytes_uploaded() + cut_curves_.bytes_uploaded();
+                      contact_.bytes_uploaded() + cut_curves_.bytes_uploaded() + plates_.bytes_uploaded();
   for (const RowTexture* texture : row_textures()) bytes += texture->bytes_uploaded();
   return bytes;
 }
@@ -321,7 +320,8 @@ std::array<const RowTexture*, 14> ModelLayer::row_textures() const {
 }
 
 std::size_t ModelLayer::bytes_held() const {
-  std::size_t bytes = shell_draws_.order_bytes() + shell_draws_.levels_bytes() + contact_.bytes_held() + cut_curves_.bytes_held();
+  std::size_t bytes =
+      shell_draws_.order_bytes() + shell_draws_.levels_bytes() + contact_.bytes_held() + cut_curves_.bytes_held() + plates_.bytes_held();
   for (const RowTexture* texture : row_textures()) bytes += texture->bytes_held();
   for (const Instances* instances : {&model_glyphs_.instances, &preview_glyphs_.instances, &marked_})
     bytes += gl::bytes_held(instances->buffer);
@@ -332,14 +332,6 @@ std::size_t ModelLayer::bytes_for(const ModelSource& source) {
   const std::size_t nodes = source.size(SnapshotArray::positions), shells = source.size(SnapshotArray::shell_nodes);
   std::size_t bytes = RowTexture::bytes_for(nodes, kPositionTexel) + 2 * RowTexture::bytes_for(nodes, kOneIndex);  // and the selected ones
   bytes += RowTexture::bytes_for(shells, kFourIndices) + RowTexture::bytes_for(shells, kTwoIndices);
-=======
-                      contact_.bytes_uploaded() + cut_curves_.bytes_uploaded() + plates_.bytes_uploaded();
-  for (const RowTexture* texture :
-       {&textures_.positions(), &textures_.connectivity(), &textures_.surface(), &borders_.texture, &creases_.texture,
-        &line_elements_.texture, &selected_.texture(), &loose_.texture(), &preview_positions_, &preview_casting_.connectivity,
-        &selection_casting_.connectivity, &preview_edges_.texture})
-    bytes += texture->bytes_uploaded();
->>>>>>> thick
   return bytes;
 }
 

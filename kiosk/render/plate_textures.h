@@ -25,6 +25,7 @@ class PlateTextures {
   /// Of all parts, deck's length unit.
   double max_thickness() const;
   std::size_t bytes_uploaded() const { return rows_.bytes_uploaded() + thickness_texture_.bytes_uploaded(); }
+  std::size_t bytes_held() const { return rows_.bytes_held() + thickness_texture_.bytes_held(); }
 
  private:
   void upload_chunk(std::size_t chunk);

@@ -38,14 +38,9 @@ struct DrawnScene {
   bool same_scene(const DrawnScene& other) const {
     const auto facts = [](const DrawnScene& d) {
       const Picture& p = d.picture;
-<<<<<<< HEAD
-      return std::tie(p.view, p.profile.optics.pixel_pitch_mm, p.colour, p.element_edges, p.outlines, p.quality_glyphs, p.damaged_only,
-                      p.marked, p.marked_point, p.selected_nodes, p.handle, p.cut_handle, p.pen, p.followed_edges, p.halfway_line,
-=======
       return std::tie(p.view, p.profile.optics.pixel_pitch_mm, p.colour, p.element_edges, p.outlines, p.thickness, p.quality_glyphs,
                       p.damaged_only, p.marked, p.marked_point, p.selected_nodes, p.handle, p.cut_handle, p.pen, p.followed_edges,
->>>>>>> thick
-                      p.measures, p.shadows, p.field, p.two_views, d.images, d.width, d.height, d.scene_version);
+                      p.halfway_line, p.measures, p.shadows, p.field, p.two_views, d.images, d.width, d.height, d.scene_version);
     };
     return facts(*this) == facts(other);
   }

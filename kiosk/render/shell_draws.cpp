@@ -268,18 +268,12 @@ void ShellDraws::draw_all(const Eigen::Matrix4d& clip_from_model, const FacesOfS
   std::vector<std::uint32_t> piece;
   const auto flush = [&] {
     const DrawSpan::Part now = span.take(last - first);
-<<<<<<< HEAD
     if (now.count == 0) return;
     if (order_in_pieces_)
-      add_to_piece(first + now.first, now.count, piece);
+      add_to_piece(first + now.first, now.count, faces.count, piece);
     else
-      glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(now.count * kCorners.size()), GL_UNSIGNED_INT,
-                     reinterpret_cast<const void*>((first + now.first) * kCorners.size() * sizeof(std::uint32_t)));
-=======
-    if (now.count > 0)
       glDrawElementsInstanced(GL_TRIANGLES, static_cast<GLsizei>(now.count * kCorners.size()), GL_UNSIGNED_INT,
                               reinterpret_cast<const void*>((first + now.first) * kCorners.size() * sizeof(std::uint32_t)), faces.count);
->>>>>>> thick
   };
   for (const Run& run : runs_) {
     if (!run.shown || !volume.may_hold(run.bounds, faces.reach)) continue;
@@ -290,22 +284,22 @@ void ShellDraws::draw_all(const Eigen::Matrix4d& clip_from_model, const FacesOfS
     last = run.first + run.count;
   }
   flush();
-  draw_piece(piece);
+  draw_piece(faces.count, piece);
   glBindVertexArray(0);
 }
 
 /// Appends shells of the order to a piece, and draws it each time it is full.
-void ShellDraws::add_to_piece(std::size_t first, std::size_t count, std::vector<std::uint32_t>& piece) const {
+void ShellDraws::add_to_piece(std::size_t first, std::size_t count, int instances, std::vector<std::uint32_t>& piece) const {
   for (std::size_t i = first; i < first + count; ++i) {
     append_shell(shell_at(i), piece);
-    if (piece.size() >= kShellsOfPiece * kCorners.size()) draw_piece(piece);
+    if (piece.size() >= kShellsOfPiece * kCorners.size()) draw_piece(instances, piece);
   }
 }
 
-void ShellDraws::draw_piece(std::vector<std::uint32_t>& piece) const {
+void ShellDraws::draw_piece(int instances, std::vector<std::uint32_t>& piece) const {
   if (piece.empty()) return;
   glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(piece.size() * sizeof(std::uint32_t)), piece.data(), GL_STREAM_DRAW);
-  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(piece.size()), GL_UNSIGNED_INT, nullptr);
+  glDrawElementsInstanced(GL_TRIANGLES, static_cast<GLsizei>(piece.size()), GL_UNSIGNED_INT, nullptr, instances);
   piece.clear();
 }
 

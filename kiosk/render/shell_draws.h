@@ -77,8 +77,8 @@ class ShellDraws {
   std::uint32_t shell_at(std::size_t place) const { return made_ ? made_->levels.shells[place].value : static_cast<std::uint32_t>(place); }
   Result<void> set_order(std::size_t shells);
   Result<void> upload_order() const;
-  void add_to_piece(std::size_t first, std::size_t count, std::vector<std::uint32_t>& piece) const;
-  void draw_piece(std::vector<std::uint32_t>& piece) const;
+  void add_to_piece(std::size_t first, std::size_t count, int instances, std::vector<std::uint32_t>& piece) const;
+  void draw_piece(int instances, std::vector<std::uint32_t>& piece) const;
   void find_moved(const ModelTable& table, std::size_t chunk);
   void look_at_runs(const ModelTable& table, const std::vector<std::uint8_t>& changed_chunks);
   void look_at_run(const ModelTable& table, std::size_t run, const std::vector<std::uint8_t>& changed_chunks);

@@ -8,11 +8,8 @@
 #include "kiosk/toolkit/model_boxes.h"
 #include "kiosk/toolkit/picking.h"
 #include "kiosk/toolkit/tool_set.h"
-<<<<<<< HEAD
-#include "kiosk/tools/view/colour_key.h"
-=======
 #include "kiosk/toolkit/words_on_thickness.h"
->>>>>>> thick
+#include "kiosk/tools/view/colour_key.h"
 #include "kiosk/tools/view/view_keys.h"
 
 namespace prismesh::kiosk::tools::view {
