@@ -3,7 +3,7 @@
 
     same_bytes_test.py FOLDER_OF_THE_PACKAGE PRISMESH [DECK..]
 
-DECK: names in counts.json. Without: the small ones; with PRISMESH_ALL_DECKS=1 all. Exit status 77 where there are no models: the test is
+DECK: names in counts.json. Without: all but two slow ones; with PRISMESH_ALL_DECKS=1 all. Exit status 77 where there are no models: the test is
 skipped.
 """
 import json
@@ -16,7 +16,7 @@ import decks  # noqa: E402
 import numpy as np  # noqa: E402
 import prismesh  # noqa: E402
 
-SMALL = 400_000  # bytes of the main file
+SLOW = {"bwb_saero", "gsa_car6_comma"}  # their repairs last: 50 and 7 seconds, from Python and the program together
 
 
 def script_for(state):
@@ -68,7 +68,6 @@ def faults_of(name, deck):
             status, _, said = decks.program("info", deck)
             return ([] if status == 1 and refused.message in said else [f"{name}: only Python refuses it: {refused}"]), None
         script = os.path.join(folder, "script.jsonl")
-        # No edit that is refused, so that a later one is compared too: those before it stay.
         reports, refused = by_python(deck, edits, os.path.join(folder, "python", os.path.basename(deck)))
         with open(script, "w", encoding="utf-8") as file:
             file.writelines(json.dumps(edit) + "\n" for edit in edits)
@@ -94,21 +93,18 @@ def main(names):
         all_decks = {name: os.path.join(models, deck["main"]) for name, deck in json.load(file).items()}
     if not names:
         everything = os.environ.get("PRISMESH_ALL_DECKS") == "1"
-        names = [name for name, deck in all_decks.items() if everything or os.path.getsize(deck) <= SMALL]
+        names = [name for name in all_decks if everything or name not in SLOW]
     faults, saved = [], 0
     for name in names:
-        began = os.times()
         found, edits = faults_of(name, all_decks[name])
         faults += found
-        if "--times" in os.environ.get("PRISMESH_PYTHON_TEST", ""):
-            print(name, sum(os.times()[:4]) - sum(began[:4]))
         saved += edits is not None and edits > 0
         print(f"{name}: {'REFUSED BY BOTH' if edits is None else 'an edit or the save refused by both' if edits < 0 else f'{edits} edits, the same bytes'}"
               if not found else f"{name}: FAULT")
     for fault in faults:
         print(fault, file=sys.stderr)
     print(f"{len(names)} of {len(all_decks)} decks, {saved} edited and saved")
-    return 1 if faults or saved < len(names) / 2 else 0
+    return 1 if faults or saved <= len(names) / 2 else 0
 
 
 if __name__ == "__main__":
