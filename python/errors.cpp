@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 
+#include "base/progress.h"
 #include "mesh/report/printable.h"
 
 namespace prismesh::python {

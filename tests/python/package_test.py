@@ -252,7 +252,9 @@ class Errors(InFolder):
         before = decks.files_of(self.folder)
         with prismesh.open(self.deck) as document:
             document.edit("translate", on="7", by=[0, 0, 1])
-            self.assertRaises(prismesh.Error, document.save, self.path("sheet.k/below/out.k"))
+            with self.assertRaises(prismesh.Error) as caught:
+                document.save(self.path("sheet.k/below/out.k"))
+            self.assertTrue(caught.exception.file.startswith(self.path("sheet.k")), caught.exception)
         self.assertEqual(decks.files_of(self.folder), before)
 
     def test_of_a_closed_document(self):
@@ -296,6 +298,28 @@ class Stopping(InFolder):
             with self.assertRaises(KeyboardInterrupt):
                 document.edit(self.LONG, progress=lambda fraction, words: os.kill(os.getpid(), signal.SIGINT))
             self.assertFalse(document.can_undo)
+
+    def test_a_repair_that_keeps_what_it_has_reached(self):
+        def after(rounds, then):
+            calls = []
+
+            def progress(fraction, words):
+                calls.append(words)
+                return then() if len(calls) > rounds else None
+            return progress
+
+        def interrupt():
+            raise KeyboardInterrupt
+
+        keeping = dict(self.LONG, on_cancel="keep")
+        with prismesh.open(self.deck) as document:
+            report = document.edit(keeping, progress=after(3, lambda: False))
+            self.assertGreater(report["stopped"]["bad_left"], 0)
+            self.assertEqual(document.state.made_by, "repair")
+            document.edit("undo")
+            self.assertRaises(KeyboardInterrupt, document.edit, keeping, progress=after(3, interrupt))
+            self.assertEqual(document.state.made_by, "repair")
+            self.assertTrue(document.can_undo)
 
     def test_ctrl_c_without_a_progress_function(self):
         # Python handles a signal between its instructions, or when the work asks for it. Here the signal comes while the work has it.
