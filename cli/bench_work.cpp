@@ -7,13 +7,13 @@
 #include <utility>
 
 #include "cli/bench_patch.h"
-#include "cli/check_figures.h"
 #include "cli/measure.h"
 #include "mesh/deck/data/deck.h"
 #include "mesh/document/damage.h"
 #include "mesh/document/drag.h"
 #include "mesh/document/prepare.h"
 #include "mesh/document/save.h"
+#include "mesh/report/check_figures.h"
 
 namespace prismesh::cli {
 
@@ -67,10 +67,10 @@ Result<Timing> measure_open(Bench& bench, BenchFigure& figure) {
 
 Result<Timing> measure_quality(Bench& bench, BenchFigure& figure) {
   if (bench.input.opened.current().model.shell_index->size() == 0) return fail("", std::string(kNoShells));
-  CheckFigures checked;
+  mesh::report::CheckFigures checked;
   TimedWork work;
   work.run = [&]() -> Result<void> {
-    checked = check_figures(bench.input.opened, nullptr, false);
+    checked = mesh::report::check_figures(bench.input.opened, nullptr, false);
     return {};
   };
   Result<Timing> timing = measure(work, bench.stopwatches);

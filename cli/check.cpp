@@ -5,12 +5,12 @@
 
 #include "base/counted.h"
 #include "base/readable_number.h"
-#include "cli/check_figures.h"
 #include "cli/commands.h"
 #include "cli/json_output.h"
 #include "cli/open_deck.h"
 #include "cli/report_text.h"
 #include "mesh/document/deck_relations.h"
+#include "mesh/report/check_figures.h"
 #include "mesh/select/expression.h"
 
 namespace prismesh::cli {
@@ -18,6 +18,8 @@ namespace prismesh::cli {
 namespace {
 
 namespace quality = mesh::quality;
+using mesh::report::check_figures;
+using mesh::report::CheckFigures;
 
 constexpr std::size_t kPartsShown = 40;
 

@@ -12,32 +12,6 @@ namespace prismesh::cli {
 
 namespace {
 
-/// Makes the box hold the point, unless a coordinate isn't finite.
-void grow(std::optional<PartFigures::Box>& box, const mesh::Vec3& point) {
-  if (!point.allFinite()) return;
-  if (!box) box = PartFigures::Box{point, point};
-  box->min = box->min.cwiseMin(point);
-  box->max = box->max.cwiseMax(point);
-}
-
-}  // namespace
-
-std::vector<PartFigures> part_figures(const mesh::Model& model) {
-  std::vector<PartFigures> figures;
-  for (const mesh::Part& part : *model.parts) figures.push_back({part.id, part.name, 0, 0, part.thickness, std::nullopt});
-  for (std::size_t shell = 0; shell < model.shell_count(); ++shell) {
-    const mesh::PartIndex part = model.shell_parts[shell];
-    if (!part.valid()) continue;
-    PartFigures& of_part = figures[part.value];
-    const mesh::ShellNodes& nodes = model.shell_nodes[shell];
-    ++(nodes.is_triangle() ? of_part.tris : of_part.quads);
-    for (const mesh::NodeIndex node : nodes.node) grow(of_part.box, model.positions[node.value]);
-  }
-  return figures;
-}
-
-namespace {
-
 /// What stands behind a part's target size.
 const char* size_source(mesh::quality::SizeFrom from) {
   return from == mesh::quality::SizeFrom::given ? "" : from == mesh::quality::SizeFrom::part ? " (guessed)" : " (guessed, the deck's)";
@@ -69,7 +43,7 @@ void print_text(std::ostream& out, const mesh::document::Document& document) {
     for (const auto& [kind, count] : deck.element_kinds) out << ' ' << printable(kind) << ' ' << count;
     out << '\n';
   }
-  const std::vector<PartFigures> parts = part_figures(document.current().model);
+  const std::vector<PartFigures> parts = mesh::report::part_figures(document.current().model);
   out << "parts        " << parts.size() << '\n';
   for (std::size_t p = 0; p < parts.size(); ++p) {
     const PartFigures& part = parts[p];
@@ -98,7 +72,7 @@ int info(const InfoOptions& options, const Common& common, const Context& contex
     return kFailed;
   }
   if (common.json)
-    context.out << info_json(*document, part_figures(document->current().model)) << '\n';
+    context.out << info_json(*document) << '\n';
   else
     print_text(context.out, *document);
   return options.save_settings && !save_settings(*document, context) ? kFailed : kDone;

@@ -1,5 +1,5 @@
-// Writes the JSON of --json; scripts rely on its fields. Only json_output.cpp, check_json.cpp and remote_json.cpp include the JSON library.
-// Inner to cli.
+// Writes the JSON of --json, some of it from the objects of mesh/report; scripts rely on its fields. Only json_output.cpp and
+// remote_json.cpp include the JSON library. Inner to cli.
 #pragma once
 
 #include <optional>
@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "cli/bench_figures.h"
-#include "cli/check_figures.h"
 #include "cli/device_figures.h"
 #include "cli/figures.h"
 #include "cli/machine_checks.h"
@@ -20,16 +19,18 @@
 #include "mesh/document/weld_checks.h"
 #include "mesh/measure/cross_section.h"
 #include "mesh/measure/lengths.h"
+#include "mesh/report/check_figures.h"
+#include "mesh/report/comparison.h"
 
 namespace prismesh::cli {
 
 // Each returns one line without a line break.
-std::string info_json(const mesh::document::Document& document, const std::vector<PartFigures>& parts);
-std::string check_json(const mesh::document::Document& document, const CheckFigures& figures);
+std::string info_json(const mesh::document::Document& document);
+std::string check_json(const mesh::document::Document& document, const mesh::report::CheckFigures& figures);
+std::string diff_json(const mesh::report::Difference& difference);
 std::string edit_json(const mesh::document::EditReport& report);
 std::string failed_edit_json(const std::string& edit, const std::string& reason);
 std::string replay_json(const std::vector<mesh::document::ReplayStep>& steps, const std::string& deck_hash, bool other_deck);
-std::string diff_json(const Difference& difference);
 std::string distance_json(const Gap& gap);
 std::string welds_json(const mesh::document::WeldChecks& checks);
 /// `nodes`: those that were measured.

@@ -10,11 +10,12 @@
 #include "cli/context.h"
 #include "mesh/document/document.h"
 #include "mesh/document/edit_report.h"
+#include "mesh/report/printable.h"
 
 namespace prismesh::cli {
 
-/// Replaces control characters and bytes that aren't UTF-8 by \xNN, for terminals and JSON.
-std::string printable(std::string_view text);
+using mesh::report::as_written;
+using mesh::report::printable;
 
 /// A number with the fewest digits that read back as the same double.
 std::string shortest(double value);
@@ -26,8 +27,6 @@ std::string criteria_names(const mesh::document::Document& document);
 
 /// A number with at most six digits: for measured lengths.
 std::string rounded(double value);
-/// The double that has a float's shortest digits: 8.07f as 8.07, not 8.06999969482422.
-double as_written(float value);
 
 /// What an edit made: "3 nodes moved", "2 elements added, 1 element removed", "6 welds added".
 std::string change_words(const mesh::document::EditReport& report);

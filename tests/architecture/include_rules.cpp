@@ -53,7 +53,7 @@ std::string pair_of(std::string_view path) { return std::string(path.substr(0, p
 }  // namespace
 
 std::string module_of(std::string_view path) {
-  constexpr std::array kLayers{"base", "mesh", "drivers", "ipc", "daemon", "kiosk", "cli", "tests"};
+  constexpr std::array kLayers{"base", "mesh", "drivers", "ipc", "daemon", "kiosk", "cli", "python", "tests"};
   const std::string_view layer = layer_of(path);
   if (layer == path || std::find(kLayers.begin(), kLayers.end(), layer) == kLayers.end()) return {};
   if (path.starts_with("tests/viewer/")) return "tests/viewer";

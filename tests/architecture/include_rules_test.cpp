@@ -72,11 +72,19 @@ TEST(IncludeRules, what_knows_devices_sees_no_deck_and_what_knows_decks_no_devic
 }
 
 TEST(IncludeRules, programs_never_include_each_other) {
-  const std::vector<std::string> programs{"cli", "kiosk", "daemon/modeld", "daemon/deviced"};
+  const std::vector<std::string> programs{"cli", "kiosk", "daemon/modeld", "daemon/deviced", "python"};
   for (const std::string& from : programs)
     for (const std::string& to : programs) EXPECT_EQ(may_include(from, to), from == to) << from << " " << to;
   EXPECT_FALSE(may_include("mesh/shape", "drivers/port"));
   EXPECT_FALSE(may_include("drivers/port", "mesh/model"));
+}
+
+TEST(IncludeRules, the_python_package_holds_the_core_alone) {
+  for (const char* below : {"mesh/report", "mesh/document", "base"}) EXPECT_TRUE(may_include("python", below)) << below;
+  for (const char* other : {"cli", "ipc/wire", "ipc/model", "drivers/port", "kiosk/link"}) {
+    EXPECT_FALSE(may_include("python", other)) << other;
+    EXPECT_FALSE(may_include(other, "python")) << other;
+  }
 }
 
 TEST(IncludeRules, no_module_includes_those_that_use_it) {

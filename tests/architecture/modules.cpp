@@ -38,6 +38,7 @@ const std::vector<Module>& modules() {
       {"mesh/relax", {"mesh/quality", "mesh/spatial"}},
       {"mesh/repair", {"mesh/relax"}},
       {"mesh/document", {"base/json", "mesh/contact", "mesh/deck", "mesh/repair", "mesh/select", "mesh/shape"}},
+      {"mesh/report", {"mesh/document"}},
 
       {"drivers/settings", {"base"}},
       {"drivers/port", {"base"}},
@@ -108,14 +109,15 @@ const std::vector<Module>& modules() {
       {"kiosk/tools/history", {"kiosk/toolkit"}},
       {"kiosk/tools/view", {"kiosk/toolkit"}},
       {"kiosk/calibration", {"kiosk/display", "kiosk/render"}},
-      {"kiosk", {"kiosk/tools/files",           "kiosk/tools/find",    "kiosk/tools/comparison", "kiosk/tools/contact",
-                 "kiosk/tools/selection",       "kiosk/tools/cutting", "kiosk/tools/welding",    "kiosk/tools/tour",
-                 "kiosk/tools/exhibition",
-                 "kiosk/tools/measuring",       "kiosk/tools/shaping", "kiosk/tools/pen",        "kiosk/tools/quality",
-                 "kiosk/tools/mesh_operations", "kiosk/tools/parts",   "kiosk/tools/history",    "kiosk/tools/view",
-                 "kiosk/calibration",           "kiosk/display/kms",   "kiosk/display/x11",      "drivers/settings"}},
+      {"kiosk",
+       {"kiosk/tools/files",   "kiosk/tools/find",    "kiosk/tools/comparison", "kiosk/tools/contact",         "kiosk/tools/selection",
+        "kiosk/tools/cutting", "kiosk/tools/welding", "kiosk/tools/tour",       "kiosk/tools/exhibition",      "kiosk/tools/measuring",
+        "kiosk/tools/shaping", "kiosk/tools/pen",     "kiosk/tools/quality",    "kiosk/tools/mesh_operations", "kiosk/tools/parts",
+        "kiosk/tools/history", "kiosk/tools/view",    "kiosk/calibration",      "kiosk/display/kms",           "kiosk/display/x11",
+        "drivers/settings"}},
 
-      {"cli", {"ipc/device", "ipc/import", "ipc/model", "ipc/pen", "ipc/remote", "mesh/measure", "drivers/settings"}},
+      {"cli", {"ipc/device", "ipc/import", "ipc/model", "ipc/pen", "ipc/remote", "mesh/measure", "mesh/report", "drivers/settings"}},
+      {"python", {"mesh/report"}},
   };
   return kModules;
 }

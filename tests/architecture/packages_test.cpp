@@ -73,7 +73,7 @@ std::set<std::string> control_field(const std::string& field) {
 }
 
 TEST(Packages, that_the_build_needs_are_those_of_the_source_package) {
-  std::set<std::string> needed{"debhelper-compat", "dh-sequence-installsysusers"};
+  std::set<std::string> needed{"debhelper-compat", "dh-sequence-installsysusers", "dh-sequence-python3"};
   const std::vector<std::string> packages = read_packages()["[build]"];
   for (const std::string& package : packages)
     if (package != "g++" && package != "ccache") needed.insert(package);  // g++ is there for each build of a package, ccache isn't needed

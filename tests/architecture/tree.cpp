@@ -17,7 +17,7 @@ std::string read_text(const std::filesystem::path& path) {
 
 std::vector<SourceText> source_tree() {
   std::vector<SourceText> sources;
-  for (const char* layer : {"base", "mesh", "drivers", "ipc", "daemon", "kiosk", "cli", "tests"}) {
+  for (const char* layer : {"base", "mesh", "drivers", "ipc", "daemon", "kiosk", "cli", "python", "tests"}) {
     const std::filesystem::path folder = project_root() / layer;
     if (!std::filesystem::is_directory(folder)) continue;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {

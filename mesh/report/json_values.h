@@ -1,10 +1,10 @@
-// JSON values in several of the printed objects. Inner to cli: only the two sources that write JSON include it.
+// JSON values in several of the printed objects. Only sources that write JSON include it.
 #pragma once
 
 #include <nlohmann/json.hpp>
 #include <optional>
 
-namespace prismesh::cli {
+namespace prismesh::mesh::report {
 
 /// The value, or null without one.
 template <class T>
@@ -12,4 +12,4 @@ nlohmann::ordered_json or_null(const std::optional<T>& value) {
   return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
 }
 
-}  // namespace prismesh::cli
+}  // namespace prismesh::mesh::report

@@ -1,6 +1,6 @@
-#include "cli/id_list.h"
+#include "mesh/report/id_list.h"
 
-namespace prismesh::cli {
+namespace prismesh::mesh::report {
 
 std::string id_list(const std::vector<std::int64_t>& ids) {
   std::string list;
@@ -15,4 +15,4 @@ std::string id_list(const std::vector<std::int64_t>& ids) {
   return list;
 }
 
-}  // namespace prismesh::cli
+}  // namespace prismesh::mesh::report

@@ -1,13 +1,13 @@
-// Writes ids as an expression. Inner to cli.
+// Writes ids as an expression.
 #pragma once
 
 #include <cstdint>
 #include <string>
 #include <vector>
 
-namespace prismesh::cli {
+namespace prismesh::mesh::report {
 
 /// "1-4,7": an expression that names these ids and no others. `ids`: ascending, each once.
 std::string id_list(const std::vector<std::int64_t>& ids);
 
-}  // namespace prismesh::cli
+}  // namespace prismesh::mesh::report

@@ -1,4 +1,4 @@
-#include "cli/check_figures.h"
+#include "mesh/report/check_figures.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,11 +6,9 @@
 #include "mesh/quality/chordal.h"
 #include "mesh/relax/reference_surface.h"
 
-namespace prismesh::cli {
+namespace prismesh::mesh::report {
 
 namespace {
-
-namespace quality = mesh::quality;
 
 constexpr double kFeatureAngle = 30;     ///< degrees; the default of edits
 constexpr std::size_t kPartsNamed = 10;  ///< max in a sentence
@@ -64,10 +62,10 @@ quality::Grade grade_of_triangles(double percent, const quality::Criteria& crite
   return percent > criteria.warn_triangles_percent ? quality::Grade::warn : quality::Grade::ok;
 }
 
-CheckFigures check_figures(const mesh::document::Document& document, const mesh::ShellSet* shells, bool chordal) {
+CheckFigures check_figures(const document::Document& document, const mesh::ShellSet* shells, bool chordal) {
   const mesh::Model& model = document.current().model;
   const quality::Criteria& criteria = *document.current().judging->criteria.criteria;
-  const quality::SizedCriteria sized = mesh::document::judged_by(document);
+  const quality::SizedCriteria sized = document::judged_by(document);
   const mesh::TimeStepControl& control = document.deck->time_step;
   CheckFigures figures;
   figures.report = quality::report(model, sized, control, shells);
@@ -81,4 +79,4 @@ CheckFigures check_figures(const mesh::document::Document& document, const mesh:
   return figures;
 }
 
-}  // namespace prismesh::cli
+}  // namespace prismesh::mesh::report

@@ -1,9 +1,9 @@
 // Ids as an expression: what the expression names is what was written.
-#include "cli/id_list.h"
+#include "mesh/report/id_list.h"
 
 #include <gtest/gtest.h>
 
-namespace prismesh::cli {
+namespace prismesh::mesh::report {
 namespace {
 
 TEST(IdListTest, runs_become_ranges_and_nothing_else_is_named) {
@@ -15,4 +15,4 @@ TEST(IdListTest, runs_become_ranges_and_nothing_else_is_named) {
 }
 
 }  // namespace
-}  // namespace prismesh::cli
+}  // namespace prismesh::mesh::report

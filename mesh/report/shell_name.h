@@ -5,11 +5,11 @@
 
 #include "mesh/model/model.h"
 
-namespace prismesh::cli {
+namespace prismesh::mesh::report {
 
 /// "shell:12".
 inline std::string shell_name(const mesh::Model& model, mesh::ShellIndex shell) {
   return "shell:" + std::to_string(model.shell_ids[shell.value]);
 }
 
-}  // namespace prismesh::cli
+}  // namespace prismesh::mesh::report

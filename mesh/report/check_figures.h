@@ -1,4 +1,4 @@
-// Computes the figures of `check`. Inner to cli.
+// Computes the figures of `check`.
 #pragma once
 
 #include <optional>
@@ -9,7 +9,7 @@
 #include "mesh/quality/report.h"
 #include "mesh/quality/structure.h"
 
-namespace prismesh::cli {
+namespace prismesh::mesh::report {
 
 struct ChordalFigures {
   double mean = 0, max = 0;  ///< deck's length unit
@@ -32,4 +32,4 @@ CheckFigures check_figures(const mesh::document::Document& document, const mesh:
 
 mesh::quality::Grade grade_of_triangles(double percent, const mesh::quality::Criteria& criteria);
 
-}  // namespace prismesh::cli
+}  // namespace prismesh::mesh::report

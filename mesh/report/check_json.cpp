@@ -1,20 +1,18 @@
-// The JSON of `check`.
+// The object of `check`.
 #include <algorithm>
 
 #include <nlohmann/json.hpp>
 
-#include "cli/json_output.h"
-#include "cli/json_values.h"
-#include "cli/report_text.h"
-#include "cli/shell_name.h"
+#include "mesh/report/json.h"
+#include "mesh/report/json_values.h"
+#include "mesh/report/printable.h"
+#include "mesh/report/shell_name.h"
 
-namespace prismesh::cli {
+namespace prismesh::mesh::report {
 
 namespace {
 
 using Json = nlohmann::ordered_json;
-namespace document = mesh::document;
-namespace quality = mesh::quality;
 
 constexpr std::size_t kNamed = 100;  ///< of each list; the count is of all
 
@@ -106,7 +104,7 @@ Json part(const document::Document& document, const quality::PartReport& each) {
 
 }  // namespace
 
-std::string check_json(const document::Document& document, const CheckFigures& figures) {
+Json check_object(const document::Document& document, const CheckFigures& figures) {
   const mesh::Model& model = document.current().model;
   const quality::Report& report = figures.report;
   Json metrics = Json::object();
@@ -143,7 +141,7 @@ std::string check_json(const document::Document& document, const CheckFigures& f
                                  {"worst", chordal->worst ? Json(shell_name(model, *chordal->worst)) : Json(nullptr)},
                                  {"measured", chordal->measured}};
   }
-  return json.dump();
+  return json;
 }
 
-}  // namespace prismesh::cli
+}  // namespace prismesh::mesh::report

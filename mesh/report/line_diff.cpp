@@ -1,4 +1,4 @@
-#include "cli/line_diff.h"
+#include "mesh/report/line_diff.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace prismesh::cli {
+namespace prismesh::mesh::report {
 
 namespace {
 
@@ -91,4 +91,4 @@ std::size_t lines_changed(std::string_view a, std::string_view b) {
   return changes(split(a), split(b));
 }
 
-}  // namespace prismesh::cli
+}  // namespace prismesh::mesh::report
