@@ -109,12 +109,12 @@ const std::vector<Module>& modules() {
       {"kiosk/tools/history", {"kiosk/toolkit"}},
       {"kiosk/tools/view", {"kiosk/toolkit"}},
       {"kiosk/calibration", {"kiosk/display", "kiosk/render"}},
-      {"kiosk", {"kiosk/tools/files",           "kiosk/tools/find",    "kiosk/tools/comparison", "kiosk/tools/contact",
-                 "kiosk/tools/selection",       "kiosk/tools/cutting", "kiosk/tools/welding",    "kiosk/tools/tour",
-                 "kiosk/tools/exhibition",      "kiosk/tools/space_mouse",
-                 "kiosk/tools/measuring",       "kiosk/tools/shaping", "kiosk/tools/pen",        "kiosk/tools/quality",
-                 "kiosk/tools/mesh_operations", "kiosk/tools/parts",   "kiosk/tools/history",    "kiosk/tools/view",
-                 "kiosk/calibration",           "kiosk/display/kms",   "kiosk/display/x11",      "drivers/settings"}},
+      {"kiosk",
+       {"kiosk/tools/files",     "kiosk/tools/find",    "kiosk/tools/comparison", "kiosk/tools/contact",    "kiosk/tools/selection",
+        "kiosk/tools/cutting",   "kiosk/tools/welding", "kiosk/tools/tour",       "kiosk/tools/exhibition", "kiosk/tools/space_mouse",
+        "kiosk/tools/measuring", "kiosk/tools/shaping", "kiosk/tools/pen",        "kiosk/tools/quality",    "kiosk/tools/mesh_operations",
+        "kiosk/tools/parts",     "kiosk/tools/history", "kiosk/tools/view",       "kiosk/calibration",      "kiosk/display/kms",
+        "kiosk/display/x11",     "drivers/settings"}},
 
       {"cli", {"ipc/device", "ipc/import", "ipc/model", "ipc/pen", "ipc/remote", "mesh/measure", "drivers/settings"}},
   };
