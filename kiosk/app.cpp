@@ -125,6 +125,7 @@ Result<void> run(const AppOptions& options) {
     if (what.exhibition) what.deck.reset();  // it is opened as it lies on the disk, without edits of earlier visits
   }
   if (options.headless_frames > 0) return run_headless(options, what);
+  what.reads_space_mice = !options.calibrate;
   const WindowOptions window = window_options(options, settings->display);
   return options.calibrate ? run_calibration(options, window, what) : run_in_window(window, what);
 }

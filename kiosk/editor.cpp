@@ -24,8 +24,8 @@ using toolkit::TakesNumbers;
 using toolkit::Tool;
 
 Editor::Editor(const stereo::Profile& profile, const toolkit::ToolOptions& options, const EditorServices& services)
-    : notices_(services.trace), context_{services.link, services.pen, services.renderer, services.clock, services.trace, notices_,
-                                         tools_,        options} {
+    : notices_(services.trace), context_{services.link, services.pen, services.renderer, services.clock,     services.trace,
+                                         notices_,      tools_,       options,           services.space_mice} {
   context_.view.profile = profile;
   context_.view.view.rotation = *stereo::named_rotation("iso");
   context_.commands = key_bindings();

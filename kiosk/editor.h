@@ -27,6 +27,7 @@ struct EditorServices {
   render::Renderer& renderer;
   Clock& clock;
   notices::Trace trace;
+  drivers::space_mouse::SpaceMice* space_mice = nullptr;  ///< null: none are read here
 };
 
 class Editor {

@@ -145,6 +145,8 @@ panels::StatusFacts status_facts(const ToolContext& context) {
     if (!view.eyes->mask.empty())
       facts.lights.push_back({"mask", view.eyes->mask, view.eyes->condition != toolkit::EyesFacts::Condition::trouble});
   }
+  for (const auto* tool : context.tools.with<toolkit::HasLight>())
+    if (const auto light = tool->light()) facts.lights.push_back({light->name, light->state, light->good});
   const bool connected = context.link.connection.connected();
   facts.lights.push_back({"model server", connected ? "connected" : "not running", connected});
   return facts;

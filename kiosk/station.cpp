@@ -9,6 +9,7 @@
 #include "kiosk/editor_keys.h"
 #include "kiosk/toolkit/history_file.h"
 #include "kiosk/tools/files/files_tool.h"
+#include "kiosk/tools/view/view_keys.h"
 
 namespace prismesh::kiosk {
 
@@ -45,6 +46,7 @@ toolkit::ToolOptions tool_options(const StationOptions& options) {
   }
   tools.follows_others = options.follows_others;
   tools.title = options.title;
+  tools.fit = ::prismesh::kiosk::tools::view::command_of(::prismesh::kiosk::tools::view::ViewCommand::fit);
   return tools;
 }
 
@@ -56,9 +58,11 @@ Station::Station(const StationOptions& options, std::unique_ptr<render::Renderer
       link(ipc::model_socket_path(options.runtime_dir), options.deck, clock, trace),
       pen(ipc::pen_socket_path(options.runtime_dir), link.connection, clock, trace),
       devices(ipc::device_socket_path(options.runtime_dir), trace),
+      space_mice(options.reads_space_mice ? std::make_unique<drivers::space_mouse::SpaceMice>(clock, drivers::space_mouse::system_sources())
+                                          : nullptr),
       eyes({}, devices, clock, trace),
       renderer(std::move(made)),
-      editor(options.profile, tool_options(options), {link, pen, *renderer, clock, trace}),
+      editor(options.profile, tool_options(options), {link, pen, *renderer, clock, trace, space_mice.get()}),
       screen(std::move(gui), options.mouse.in_words(),
              KeptArrangement(options.exhibition ? std::filesystem::path() : state_file("arrangement.toml")), editor),
       fixed_eyes_(options.fixed_eyes_mm.has_value()),
@@ -80,6 +84,7 @@ Result<void> Station::turn() {
   link.turn();
   pen.turn();
   devices.turn();
+  if (space_mice) space_mice->turn();
   if (Result<void> followed = editor.follow(); !followed) return followed;
   if (Result<void> made = editor.make_levels(); !made) return made;
   follow_profile();

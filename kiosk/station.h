@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "base/clock.h"
+#include "drivers/space_mouse/space_mice.h"
 #include "kiosk/device_link.h"
 #include "kiosk/display/monitor.h"
 #include "kiosk/editor.h"
@@ -28,7 +29,8 @@ struct StationOptions {
   std::size_t video_memory = 0;  ///< bytes; 0: no limit
   bool trace = false;
   bool follows_others = false;  ///< moves together with other kiosks that do
-  std::string title{};          ///< says at the top of the view what is shown
+  bool reads_space_mice = false;
+  std::string title{};  ///< says at the top of the view what is shown
   std::optional<toolkit::ExhibitionOptions> exhibition{};
 };
 
@@ -43,6 +45,7 @@ struct Station {
   link::ModelLink link;
   link::PenLink pen;
   DeviceLink devices;
+  std::unique_ptr<drivers::space_mouse::SpaceMice> space_mice;  ///< null: none are read
   EyeWatch eyes;
   std::unique_ptr<render::Renderer> renderer;
   Editor editor;

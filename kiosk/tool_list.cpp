@@ -15,6 +15,7 @@
 #include "kiosk/tools/quality/quality_tool.h"
 #include "kiosk/tools/selection/selection_tool.h"
 #include "kiosk/tools/shaping/shaping_tool.h"
+#include "kiosk/tools/space_mouse/space_mouse_tool.h"
 #include "kiosk/tools/tour/tour_tool.h"
 #include "kiosk/tools/view/view_tool.h"
 #include "kiosk/tools/welding/welding_tool.h"
@@ -52,6 +53,7 @@ const std::vector<ListedTool>& listed_tools() {
       {{}, make<tools::history::HistoryTool>},
       {tools::view::keys(), make<tools::view::ViewTool>},
       {tools::pen::keys(), make<tools::pen::PenTool>},
+      {{}, make<tools::space_mouse::SpaceMouseTool>},
       {kWindowKeys},
       {tools::tour::keys(), make<tools::tour::TourTool>},
       {{}, make<tools::exhibition::ExhibitionTool>},

@@ -3,8 +3,8 @@
 #include <poll.h>
 
 #include <algorithm>
-#include <array>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -127,6 +127,11 @@ bool is_of_hand(const display::WindowEvent& event) {
 Result<void> WindowedKiosk::take(const display::WindowEvent& event) {
   const auto* key = std::get_if<display::KeyChanged>(&event);
   const bool repeats = (key != nullptr && key->repeat) || std::holds_alternative<display::TextTyped>(event);  // text comes with its key
+  // What is done in another window isn't for this one.
+  const bool lost = std::holds_alternative<display::FocusLost>(event);
+  const bool gained =
+      std::holds_alternative<display::FocusGained>(event) || (is_of_hand(event) && !std::holds_alternative<display::PointerMoved>(event));
+  if (station_.space_mice && (lost || gained)) station_.space_mice->listen(gained);
   if (is_of_hand(event) && station_.editor.takes_input(!repeats)) {
     dirty_ = true;
     return {};
@@ -354,6 +359,11 @@ std::int64_t WindowedKiosk::patience_ns() const {
   std::int64_t patience = link_ms < 0 ? kForEverNs : link_ms * std::int64_t{1'000'000};
   if (!station_.devices.connected() || !station_.pen.is_connected()) patience = shorter(patience, kDaemonTriesNs);
   if (station_.pen.has_pen()) patience = shorter(patience, kPenLookNs);
+  if (station_.space_mice) {
+    // Its cap may be held still, and a move ends when it has rested.
+    const bool works = !station_.space_mice->motion().at_rest() || station_.link.drag.running() != nullptr;
+    patience = shorter(patience, works && station_.space_mice->any() ? kPenLookNs : drivers::space_mouse::SpaceMice::kLookNs);
+  }
   if (stale() || station_.eyes.watches()) patience = shorter(patience, std::max<std::int64_t>(0, station_.eyes.next_look_ns() - now));
   if (station_.screen.gui().wants_keys()) patience = shorter(patience, kCaretBlinkNs);
   if (const auto report = watch_.next_ns()) patience = shorter(patience, std::max<std::int64_t>(0, *report - now));
@@ -367,10 +377,12 @@ std::int64_t WindowedKiosk::patience_ns() const {
 }
 
 void WindowedKiosk::wait() {
-  std::array<pollfd, 4> watched{{{window_.descriptor(), POLLIN, 0},
-                                 {station_.link.connection.descriptor(), POLLIN, 0},
-                                 {station_.devices.descriptor(), POLLIN, 0},
-                                 {station_.pen.descriptor(), POLLIN, 0}}};
+  std::vector<pollfd> watched{{window_.descriptor(), POLLIN, 0},
+                              {station_.link.connection.descriptor(), POLLIN, 0},
+                              {station_.devices.descriptor(), POLLIN, 0},
+                              {station_.pen.descriptor(), POLLIN, 0}};
+  if (station_.space_mice)
+    for (const int descriptor : station_.space_mice->descriptors()) watched.push_back({descriptor, POLLIN, 0});
   const std::int64_t patience = patience_ns();
   const bool caret = station_.screen.gui().wants_keys();
   const timespec most{patience / 1'000'000'000, patience % 1'000'000'000};

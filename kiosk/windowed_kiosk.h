@@ -36,7 +36,10 @@ class WindowedKiosk {
   /// The view or something in it is about to change again.
   bool moving() const { return gestures_.dragging() || station_.clock.now_ns() < wheel_rest_ns_; }
   /// The view moves to another by itself.
-  bool gliding() const { return station_.editor.context().view.depth.moving() || station_.editor.context().view.glide.moving(); }
+  bool gliding() const {
+    return station_.editor.context().view.depth.moving() || station_.editor.context().view.glide.moving() ||
+           station_.editor.context().view.steered;
+  }
   /// The picture on the display is out of date.
   bool stale() const { return dirty_ || station_.editor.changes() != shown_changes_ || (shown_moving_ && !moving()) || gliding(); }
   Result<bool> beat();

@@ -108,7 +108,11 @@ Error usb_open_error(const std::string& name, const std::string& path, int error
     case EACCES:
       return says("this user may not open it: install systemd/udev/60-prismesh.rules, whose line for the " + name +
                   " opens it to the group prismesh and to the user at the station, and plug the device in again");
-    case EPERM: return says("systemd keeps it from the program's unit: allow it there (DeviceAllow=char-usb_device rw)");
+    case EPERM: {
+      const bool hidraw = path.find("hidraw") != std::string::npos;
+      return says("systemd keeps it from the program's unit: allow it there (DeviceAllow=" +
+                  std::string(hidraw ? "char-hidraw r)" : "char-usb_device rw)"));
+    }
     case EBUSY: {
       const std::string who = holders(path);
       return says("another program uses it" + (who.empty() ? std::string() : ": " + who) + "; end that program");

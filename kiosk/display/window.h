@@ -95,7 +95,8 @@ struct TextTyped {
   std::string text;  ///< UTF-8, no control characters
 };
 struct PointerLeft {};
-struct FocusLost {};  ///< keys and buttons held down count as released
+struct FocusLost {};    ///< keys and buttons held down count as released
+struct FocusGained {};  ///< on a desktop
 struct Resized {
   PixelSize size;
 };
@@ -103,8 +104,8 @@ struct Moved {};    ///< another position on the desktop, or another monitor or 
 struct Exposed {};  ///< the picture must be shown again
 struct CloseRequested {};
 
-using WindowEvent = std::variant<PointerMoved, ButtonChanged, WheelTurned, KeyChanged, TextTyped, PointerLeft, FocusLost, Resized, Moved,
-                                 Exposed, CloseRequested>;
+using WindowEvent = std::variant<PointerMoved, ButtonChanged, WheelTurned, KeyChanged, TextTyped, PointerLeft, FocusLost, FocusGained,
+                                 Resized, Moved, Exposed, CloseRequested>;
 
 struct Monitor;  // monitor.h
 

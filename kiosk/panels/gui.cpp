@@ -121,6 +121,7 @@ struct Feed {
   }
   void operator()(const display::TextTyped& event) const { ImGui::GetIO().AddInputCharactersUTF8(event.text.c_str()); }
   void operator()(const display::PointerLeft&) const { ImGui::GetIO().MousePos = ImVec2(-FLT_MAX, -FLT_MAX); }
+  void operator()(const display::FocusGained&) const {}
   void operator()(const display::FocusLost&) const {
     std::fill(std::begin(ImGui::GetIO().KeysDown), std::end(ImGui::GetIO().KeysDown), false);
     std::fill(std::begin(ImGui::GetIO().MouseDown), std::end(ImGui::GetIO().MouseDown), false);

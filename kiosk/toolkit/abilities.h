@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -204,6 +205,17 @@ class TellsLive : public Ability {
   virtual std::string live_words() const = 0;
   /// The value alone, which stands beside the pointer that pulls: "12.4 mm"; empty: no pointer does.
   virtual std::string value_at_hand() const = 0;
+};
+
+/// A word of the status line: a device, and whether all is well with it.
+struct Light {
+  std::string name, state;
+  bool good = true;
+};
+class HasLight : public Ability {
+ public:
+  /// Nothing: there is nothing to say.
+  virtual std::optional<Light> light() const = 0;
 };
 
 class HasStatus : public Ability {

@@ -25,6 +25,7 @@ struct PictureView {
   stereo::View view;
   DepthFit depth;
   ViewGlide glide;
+  bool steered = false;    ///< a SpaceMouse moves the view at this time
   bool two_views = false;  ///< the picture has two views side by side
   render::ColourMode colour = render::ColourMode::parts;
   bool shadows = false;

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "base/clock.h"
+#include "drivers/space_mouse/space_mice.h"
 #include "kiosk/input/command.h"
 #include "kiosk/input/gestures.h"
 #include "kiosk/link/model_link.h"
@@ -93,6 +94,7 @@ struct ToolOptions {
   bool follows_others = false;            ///< moves together with other kiosks that do
   std::string title{};                    ///< shown where no tool guides the user
   std::optional<ExhibitionOptions> exhibition{};
+  input::Command fit{};  ///< fits the view
 };
 
 struct ToolContext {
@@ -104,7 +106,8 @@ struct ToolContext {
   notices::Notices& notices;
   ToolSet& tools;
   ToolOptions options{};
-  std::span<const input::KeyBinding> commands{};  ///< of all tools and the editor
+  drivers::space_mouse::SpaceMice* space_mice = nullptr;  ///< null: none are read here
+  std::span<const input::KeyBinding> commands{};          ///< of all tools and the editor
 
   PictureView view{};
   ShownModel shown{};

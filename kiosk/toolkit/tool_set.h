@@ -79,7 +79,7 @@ class ToolSet {
   All all_;
   std::vector<Moded> moded_;  ///< all of them
   AbilityLists<TakesNumbers, GuardsInput, HasHandle, Drags, Watches, HasMode, TakesBack, Clears, GuardsEdits, HoldsEdits, SetsShaping,
-               SetsRegion, Previews, MovesView, FollowsView, ColoursModel, HidesGlyphs, TracesPicture, HasStatus, HasTab, InRail,
+               SetsRegion, Previews, MovesView, FollowsView, ColoursModel, HidesGlyphs, TracesPicture, HasStatus, HasLight, HasTab, InRail,
                HasOptions, TellsLive, HasMenuEntries, DrawsOverPicture, HasDialogs, AsksQuestions>
       abilities_;
 };

@@ -254,6 +254,7 @@ void X11Window::translate(XEvent& event, std::vector<WindowEvent>& out) {
       held_.fill(false);
       out.emplace_back(FocusLost{});
       break;
+    case FocusIn: out.emplace_back(FocusGained{}); break;
     case ReparentNotify: position_stale_ = true; break;
     case ConfigureNotify: translate_configure(event.xconfigure, out); break;
     case Expose:

@@ -156,5 +156,29 @@ TEST_F(FalconProcess, says_what_is_wrong_and_sends_nothing) {
   ASSERT_TRUE(wait_for([&] { return stage() == PenStage::disarmed; })) << info().trouble;
 }
 
+TEST_F(FalconProcess, weighs_only_when_it_is_told_to_go_on_and_sends_nothing_before) {
+  bus_.plug_in(device_);
+  const std::string program = (test::programs_folder() / "prismesh-deviced").string() + " --only pen --state-dir " +
+                              (folder_ / "state").string() + " --config " + (folder_ / "prismesh.toml").string();
+  const std::map<std::string, std::string> environment{{"XDG_CONFIG_HOME", folder_.string()}};
+  Process heavy({"sh", "-c", program + " --weigh 2000 < /dev/null"}, environment);
+  EXPECT_EQ(heavy.wait_for_exit(), 1);
+  EXPECT_THAT(heavy.standard_error(), testing::HasSubstr("2000 g need 19.61 N"));
+  Process no_number({"sh", "-c", program + " --weigh 5kg < /dev/null"}, environment);
+  EXPECT_EQ(no_number.wait_for_exit(), 1);
+  EXPECT_THAT(no_number.standard_error(), testing::HasSubstr("must be a weight in grams, not 5kg"));
+  // The input is open and silent until a file appears, then it ends.
+  const std::string quiet = "while [ ! -e " + (folder_ / "end").string() + " ]; do sleep 0.1; done";
+  Process weighs({"sh", "-c", "(" + quiet + ") | " + program + " --weigh 100"}, environment);
+  EXPECT_FALSE(weighs.wait_for("home it by hand").empty()) << weighs.standard_error();
+  ASSERT_FALSE(weighs.wait_for("1. Take everything off the grip").empty()) << weighs.standard_error();
+  const std::size_t asked = seen().size();
+  ASSERT_TRUE(wait_for([&] { return seen().size() > asked + 200; })) << "it goes on asking for poses";
+  std::ofstream(folder_ / "end") << "";
+  EXPECT_EQ(weighs.wait_for_exit(), 1);
+  EXPECT_THAT(weighs.standard_error(), testing::HasSubstr("the input ended"));
+  for (const falcon::ForcePacket& packet : seen()) ASSERT_TRUE(is_zero(packet));
+}
+
 }  // namespace
 }  // namespace prismesh::deviced::pen
