@@ -66,7 +66,7 @@ void Connection::lost(const Error& error) {
 void Connection::ask(const ipc::Request& request, Then then) {
   if (!client_) return notices_.say(notice_of_missing_server());
   if (guard_ && !guard_(request)) {
-    if (then) then(ipc::failed_from({"", 0, "other files than the deck that is shown are closed here"}));
+    if (then) then(ipc::failed_from({"", 0, "this would read or write files, which are closed here"}));
     return;
   }
   const Result<std::uint64_t> sent = client_->send(request);

@@ -197,7 +197,7 @@ TEST(ExhibitionShow, says_what_is_wrong_and_where) {
   EXPECT_THAT(fault("{\"turn\":[1]}"), HasSubstr("two numbers"));
   EXPECT_THAT(fault("{\"fit\":\"all\"}"), HasSubstr("\"fit\""));
   EXPECT_THAT(fault("{\"edit\":{\"edit\":\"lfit\"}}"), HasSubstr("lift"));
-  EXPECT_THAT(fault("{\"edit\":{\"edit\":\"replace_part\",\"part\":1,\"deck\":\"/etc/passwd\"}}"), HasSubstr("reads a file"));
+  EXPECT_THAT(fault("{\"edit\":{\"edit\":\"replace_part\",\"part\":1,\"deck\":\"/etc/passwd\"}}"), HasSubstr("reads or writes a file"));
   EXPECT_THAT(fault("{\"title\":\"" + std::string(500, 'x') + "\"}"), HasSubstr("at most 400"));
   EXPECT_FALSE(read_show("/nonexistent/show.jsonl"));
 }
@@ -246,7 +246,8 @@ TEST(ExhibitionRequests, reach_no_other_file) {
   };
   const std::pair both(true, true), neither(false, false);
   EXPECT_EQ(edit(R"({"edit":"lift","distance":3})"), both);
-  EXPECT_EQ(edit(R"({"edit":"set_criteria","criteria":"deck"})"), both);
+  EXPECT_EQ(edit(R"({"edit":"set_criteria","criteria":"deck"})"), neither) << "kept in a file beside the deck";
+  EXPECT_EQ(edit(R"({"edit":"set_target_size","size":5})"), neither) << "as well";
   EXPECT_EQ(edit(R"({"edit":"set_criteria","criteria":"../mine.json"})"), neither);
   EXPECT_EQ(edit(R"({"edit":"replace_part","part":1,"deck":"other.k"})"), neither);
   EXPECT_EQ(edit(R"({"edit":"weld","points_file":"points.csv"})"), neither);

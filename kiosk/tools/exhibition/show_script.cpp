@@ -71,7 +71,7 @@ Result<void> take_field(const std::string& name, const json& value, ShowStep& st
         Error{"", 0, fmt::format("\"{}\" is no field of a step: title, words, seconds, edit, turn, zoom, fit", name.substr(0, 40))});
   Result<mesh::document::Edit> edit = mesh::document::edit_from_json(value);
   if (!edit) return fail(edit.error());
-  if (!is_allowed(ipc::ApplyEdit{*edit}, {})) return fail(Error{"", 0, "this edit reads a file: a show can't"});
+  if (!is_allowed(ipc::ApplyEdit{*edit}, {})) return fail(Error{"", 0, "this edit reads or writes a file: a show can't"});
   step.edit = std::move(*edit);
   return {};
 }
