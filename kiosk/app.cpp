@@ -42,6 +42,8 @@ Result<void> run_in_window(const WindowOptions& options, const StationOptions& w
     if (!station) return fail(station.error());
     if (Result<void> run = WindowedKiosk(**window, **station).run(); !run) return run;
     if (!(*station)->editor.context().anew) return {};
+    (*window)->set_clipboard({});
+    (*window)->set_fullscreen(options.fullscreen);
   }
 }
 

@@ -33,10 +33,15 @@ using toolkit::AsksQuestions;
 using toolkit::Cover;
 using toolkit::ToolContext;
 
+/// Where decks lie is no matter of an exhibition's visitors.
+std::string shown_path(const ToolContext& context, const std::filesystem::path& path) {
+  return context.options.exhibition ? path.filename().string() : path.string();
+}
+
 panels::DocumentFacts document_facts(const ToolContext& context) {
   const ipc::SnapshotInfo& info = context.shown.snapshot->info();
   panels::DocumentFacts facts;
-  facts.path = info.document;
+  facts.path = shown_path(context, info.document);
   facts.nodes = info.nodes;
   facts.shells = info.counts.ok + info.counts.warn + info.counts.fail;  // the arrays hold removed ones too
   facts.parts = info.parts.size();
@@ -70,7 +75,7 @@ void bar(ToolContext& context, PanelLayout& layout) {
   if (const auto& shown = context.shown.snapshot) {
     const std::filesystem::path path = shown->info().document;
     facts.deck = path.filename().string();
-    facts.path = path.string();
+    facts.path = shown_path(context, path);
     facts.changed = shown->info().changed;
     facts.can_undo = shown->info().can_undo;
     facts.can_redo = shown->info().can_redo;

@@ -122,17 +122,34 @@ bool is_of_hand(const display::WindowEvent& event) {
          std::holds_alternative<display::TextTyped>(event);
 }
 
+/// What was pressed before must be let go, whoever takes the input.
+bool is_release(const display::WindowEvent& event) {
+  const auto* key = std::get_if<display::KeyChanged>(&event);
+  const auto* button = std::get_if<display::ButtonChanged>(&event);
+  return (key != nullptr && !key->down) || (button != nullptr && !button->down);
+}
+
 }  // namespace
 
+/// Neither the repetition of a key that is held down, nor its text, nor the trembling of a mouse.
+bool WindowedKiosk::is_fresh(const display::WindowEvent& event) {
+  constexpr double kTremblesPixels = 5;
+  if (std::holds_alternative<display::TextTyped>(event)) return false;
+  if (const auto* key = std::get_if<display::KeyChanged>(&event)) return !key->repeat;
+  const auto* moved = std::get_if<display::PointerMoved>(&event);
+  if (moved == nullptr) return true;
+  const input::Pixel at(moved->x, moved->y);
+  if (moved_from_ && (at - *moved_from_).norm() < kTremblesPixels) return false;
+  return std::exchange(moved_from_, at).has_value();
+}
+
 Result<void> WindowedKiosk::take(const display::WindowEvent& event) {
-  const auto* key = std::get_if<display::KeyChanged>(&event);
-  const bool repeats = (key != nullptr && key->repeat) || std::holds_alternative<display::TextTyped>(event);  // text comes with its key
   // What is done in another window isn't for this one.
   const bool lost = std::holds_alternative<display::FocusLost>(event);
   const bool gained =
       std::holds_alternative<display::FocusGained>(event) || (is_of_hand(event) && !std::holds_alternative<display::PointerMoved>(event));
   if (station_.space_mice && (lost || gained)) station_.space_mice->listen(gained);
-  if (is_of_hand(event) && station_.editor.takes_input(!repeats)) {
+  if (is_of_hand(event) && !is_release(event) && station_.editor.takes_input(is_fresh(event))) {
     dirty_ = true;
     return {};
   }
@@ -150,7 +167,7 @@ Result<void> WindowedKiosk::take(const display::WindowEvent& event) {
     return {};
   }
   if (const auto* button = std::get_if<display::ButtonChanged>(&event)) return take_button(*button);
-  if (key != nullptr) return take_key(*key);
+  if (const auto* key = std::get_if<display::KeyChanged>(&event)) return take_key(*key);
   if (const auto* text = std::get_if<display::TextTyped>(&event)) return take_text(*text);
   station_.screen.gui().feed(event);
   dirty_ = true;
@@ -273,7 +290,9 @@ Result<void> WindowedKiosk::fire_held() {
 void WindowedKiosk::do_command(const input::Command& command) { do_command(command, pointer_on_picture()); }
 
 void WindowedKiosk::do_command(const input::Command& command, const std::optional<input::Pixel>& pointer) {
-  if (command == command_of(EditorCommand::fullscreen) && station_.editor.allow_command(command))
+  const bool of_window = command == command_of(EditorCommand::fullscreen) || command == command_of(EditorCommand::rearm);
+  if (of_window && !station_.editor.allow_command(command)) return;
+  if (command == command_of(EditorCommand::fullscreen))
     window_.set_fullscreen(fullscreen_ = !fullscreen_);
   else if (command == command_of(EditorCommand::rearm))
     station_.devices.rearm();

@@ -18,6 +18,7 @@ class WindowedKiosk {
 
  private:
   Result<void> take(const display::WindowEvent& event);
+  bool is_fresh(const display::WindowEvent& event);
   Result<void> take_button(const display::ButtonChanged& event);
   Result<void> take_key(const display::KeyChanged& event);
   Result<void> take_text(const display::TextTyped& event);
@@ -58,7 +59,8 @@ class WindowedKiosk {
   display::Window& window_;
   Station& station_;
   input::Gestures gestures_;
-  bool swallow_text_ = false;  ///< the text of the key that opened a field is dropped
+  std::optional<input::Pixel> moved_from_;  ///< where the pointer was when a move of it counted last
+  bool swallow_text_ = false;               ///< the text of the key that opened a field is dropped
   /// A plain letter that edits: it waits whether another one makes a word of it, which is typed beside a field.
   struct HeldLetter {
     const input::KeyBinding* binding = nullptr;

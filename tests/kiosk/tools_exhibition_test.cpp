@@ -161,6 +161,9 @@ TEST(ExhibitionPin, waits_survive_the_program) {
   EXPECT_FALSE(again.try_pin("4711", kNow)) << "even the right one";
   EXPECT_TRUE(again.try_pin("4711", kNow + 30));
   EXPECT_EQ(PinGate(kHashOf4711, file).wait_s(kNow), 0) << "the right one forgives";
+  const std::filesystem::path nowhere = "/proc/nothing/can/be/written/here";
+  for (int i = 0; i < kFreeTries; ++i) EXPECT_FALSE(PinGate(kHashOf4711, nowhere).try_pin("0000", kNow)) << "a gate for each visit";
+  EXPECT_EQ(PinGate(kHashOf4711, nowhere).wait_s(kNow), 30) << "the program remembers";
   EXPECT_FALSE(PinGate("", file).try_pin("", kNow)) << "without a PIN there is no way in";
   std::filesystem::remove_all(file.parent_path());
 }

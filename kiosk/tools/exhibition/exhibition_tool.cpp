@@ -21,6 +21,7 @@ namespace {
 
 constexpr std::string_view kName = "exhibition";
 constexpr std::int64_t kShowFrameNs = 33'000'000;  ///< between two pictures of the show
+constexpr std::int64_t kTouchNs = 400'000'000;
 constexpr std::int64_t kRestoreAgainNs = 5'000'000'000;
 constexpr double kFitShare = 0.75;  ///< of the view that a fitted model has in the show ...
 constexpr double kFitAbove = 0.1;   ///< ... and how far above the middle, for the card below it
@@ -67,6 +68,9 @@ void ExhibitionTool::watch(std::int64_t now_ns) {
   if (!on()) return;
   // A tracker that was away says nothing of who has come meanwhile.
   if (const std::optional<bool> face = face_seen(context_.view.eyes)) clock_.face(*face, now_ns);
+  // A model server that has started anew brings back what the visit did.
+  const std::uint64_t before = std::exchange(connection_, context_.link.connection.number());
+  if (locked() && before > 0 && before != connection_) clock_.end();
   const int left = clock_.stage() == Stage::warning ? clock_.seconds_left(now_ns) : 0;
   clock_.turn(now_ns);
   if (clock_.stage() == Stage::warning && clock_.seconds_left(now_ns) != left) ++context_.changes;
@@ -135,10 +139,14 @@ void ExhibitionTool::restored() {
 
 bool ExhibitionTool::takes_input(bool fresh) {
   if (!on()) return false;
-  if (!fresh) return clock_.stage() != Stage::visit && clock_.stage() != Stage::unlocked;  // something may lie on a key
-  const bool taken = clock_.touched(context_.clock.now_ns());
+  const std::int64_t now_ns = context_.clock.now_ns();
+  // A touch is a move and a press, a key comes with its text: all that belongs to what ended the show goes no further either.
+  const bool belongs = now_ns < taken_until_ns_;
+  if (!fresh) return belongs || (clock_.stage() != Stage::visit && clock_.stage() != Stage::unlocked);  // something may lie on a key
+  const bool taken = clock_.touched(now_ns);
+  if (taken) taken_until_ns_ = now_ns + kTouchNs;
   follow_stage();
-  return taken;
+  return taken || belongs;
 }
 
 bool ExhibitionTool::allow_command(const input::Command& command) {

@@ -56,6 +56,8 @@ class ExhibitionTool final : public toolkit::Tool,
   ShowClock clock_;
   PinGate gate_;
   std::vector<ShowStep> show_;
+  std::int64_t taken_until_ns_ = 0;  ///< what comes before it belongs to the touch that ended the show or the warning
+  std::uint64_t connection_ = 0;     ///< to the model server; 0: there was none yet
   Stage traced_ = Stage::over;
   bool restoring_ = false;       ///< the deck isn't open as it lies on the disk yet
   std::int64_t restore_ns_ = 0;  ///< when that is asked for at the earliest

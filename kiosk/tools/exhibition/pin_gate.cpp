@@ -1,9 +1,12 @@
 #include "kiosk/tools/exhibition/pin_gate.h"
 
 #include <crypt.h>
+#include <fcntl.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <fstream>
+#include <map>
 #include <memory>
 
 namespace prismesh::kiosk::tools::exhibition {
@@ -18,6 +21,12 @@ PinTries read_tries(const std::filesystem::path& file) {
   // A file that says anything else counts as one that isn't there: it is in the kiosk's own folder.
   if (PinTries read; in >> read.wrong >> read.until_s && read.wrong >= 0) tries = read;
   return tries;
+}
+
+/// What this program knows of the tries in a file.
+PinTries& remembered(const std::filesystem::path& file) {
+  static std::map<std::filesystem::path, PinTries> all;
+  return all[file];
 }
 
 }  // namespace
@@ -41,8 +50,10 @@ bool pin_matches(const std::string& pin, const std::string& hash) {
   return made != nullptr && made[0] == '$' && hash == made;
 }
 
-PinGate::PinGate(std::string hash, std::filesystem::path file)
-    : hash_(std::move(hash)), file_(std::move(file)), tries_(file_.empty() ? PinTries() : read_tries(file_)) {}
+PinGate::PinGate(std::string hash, std::filesystem::path file) : hash_(std::move(hash)), file_(std::move(file)), tries_(remembered(file_)) {
+  const PinTries read = file_.empty() ? PinTries() : read_tries(file_);
+  if (read.until_s > tries_.until_s || read.wrong > tries_.wrong) tries_ = read;
+}
 
 bool PinGate::try_pin(const std::string& pin, std::int64_t now_s) {
   if (!has_pin() || wait_s(now_s) > 0) return false;
@@ -53,11 +64,24 @@ bool PinGate::try_pin(const std::string& pin, std::int64_t now_s) {
   return right;
 }
 
+/// A new file takes the old one's place once it is on the disk: it is never half one. Where it can't be written, the program remembers.
 void PinGate::keep() {
+  remembered(file_) = tries_;
   if (file_.empty()) return;
   std::error_code ignored;
   std::filesystem::create_directories(file_.parent_path(), ignored);
-  std::ofstream(file_, std::ios::trunc) << tries_.wrong << ' ' << tries_.until_s << '\n';
+  const std::filesystem::path next = file_.string() + ".new";
+  const std::string text = std::to_string(tries_.wrong) + ' ' + std::to_string(tries_.until_s) + '\n';
+  const int file = ::open(next.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+  if (file < 0) return;
+  const bool written = ::write(file, text.data(), text.size()) == static_cast<ssize_t>(text.size()) && ::fsync(file) == 0;
+  ::close(file);
+  if (!written) return;
+  std::filesystem::rename(next, file_, ignored);
+  if (const int folder = ::open(file_.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC); folder >= 0) {
+    ::fsync(folder);
+    ::close(folder);
+  }
 }
 
 }  // namespace prismesh::kiosk::tools::exhibition

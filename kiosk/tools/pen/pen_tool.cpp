@@ -52,7 +52,10 @@ void PenTool::watch(std::int64_t now_ns) {
   const PenPose pose = pose_of(*state, now_ns);
   const PenHand::Act what = hand_.turn(pose, place_in_view(context_.view.view, context_.pen.info()->workspace_scale));
   context_.pen.place(told_place(hand_.place(), context_.shown.document_number));
-  act(what, *state, pose);
+  if (what != PenHand::Act::none && context_.tools.takes_input(true))
+    act(hand_.leave() ? PenHand::Act::cancel : PenHand::Act::none, {}, {});
+  else
+    act(what, *state, pose);
   show(can_be_shown(*state, now_ns) ? std::optional(drawn(*state, pose)) : std::nullopt);
 }
 

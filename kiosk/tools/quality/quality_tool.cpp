@@ -253,7 +253,7 @@ std::optional<SizeFacts> QualityTool::size_facts(const ipc::SnapshotInfo& info) 
 }
 
 void QualityTool::list_criteria() {
-  if (!context_.shown.snapshot) return;
+  if (!context_.shown.snapshot || context_.options.exhibition) return;
   const std::filesystem::path deck = context_.shown.snapshot->info().document;
   criteria_files_ = mesh::quality::criteria_files_in(deck.parent_path());
 }
