@@ -50,6 +50,8 @@ std::string all_of(const StationSettings& settings) {
   const RemoteSettings& r = settings.remote;
   text << '|' << r.address << '|' << r.port << '|' << r.hosts.size() << '|' << r.quota_gb << '|' << r.file_gb << '|' << r.reserved_gb << '|'
        << r.upload_hours;
+  const ExhibitionSettings& e = settings.exhibition;
+  text << '|' << e.deck << '|' << e.show << '|' << e.idle_s << '|' << e.warning_s << '|' << e.pin;
   return text.str();
 }
 
@@ -113,6 +115,12 @@ quota_gb = 20
 file_gb = 4
 reserved_gb = 1
 upload_hours = 48
+[exhibition]
+deck = "/srv/show/sample.k"
+show = "show.jsonl"
+idle_s = 40
+warning_s = 5
+pin = "$6$saltsalt$hash-as-crypt-writes-it"
 )";
 
 TEST(Settings, an_empty_file_keeps_every_default) { EXPECT_EQ(all_of(parsed("")), all_of(StationSettings{})); }
@@ -121,7 +129,8 @@ TEST(Settings, every_key_is_read) {
   EXPECT_EQ(all_of(parsed(kEveryKey)),
             "anaglyph|6.5|2DP-1|1920 1080 60|1|256|1|1|/dev/serial/by-id/usb-tracker|9600|0|1|4243|12.5|0.5|1 210.5 -15|61|lean|"
             "1|1|/dev/serial/by-id/usb-servo|57600|7|4|1|1000|1.5|6|20|middle-orbit|64|30|1/dev/pts/"
-            "9|6|500|0.1|0.4|2.5|1|push.hand|falcon.bin|0.9|0.7|0.2|::1|7443|2|20|4|1|48");
+            "9|6|500|0.1|0.4|2.5|1|push.hand|falcon.bin|0.9|0.7|0.2|::1|7443|2|20|4|1|48|/srv/show/"
+            "sample.k|show.jsonl|40|5|$6$saltsalt$hash-as-crypt-writes-it");
 }
 
 TEST(Settings, names_choose_drivers_and_dialects) {
@@ -231,7 +240,9 @@ TEST(Settings, refuses_numbers_beyond_their_limits) {
                            {"remote", "quota_gb", "0", "1", "1000000", "1000001"},
                            {"remote", "file_gb", "0", "1", "1000", "1001"},
                            {"remote", "reserved_gb", "-1", "0", "1000000", "1000001"},
-                           {"remote", "upload_hours", "0", "1", "8760", "8761"}}) {
+                           {"remote", "upload_hours", "0", "1", "8760", "8761"},
+                           {"exhibition", "idle_s", "4", "5", "86400", "86401"},
+                           {"exhibition", "warning_s", "0", "1", "600", "601"}}) {
     const std::string key = std::string("[") + one.section + "]\n" + one.key + " = ";
     for (const char* taken : {one.low, one.high}) EXPECT_EQ(error_of(key + taken), "accepted") << key << taken;
     for (const char* refused : {one.below, one.above})
@@ -398,6 +409,13 @@ TEST(SettingsExample, its_comments_contain_every_key_with_its_default) {
     return keys;
   };
   EXPECT_EQ(keys_of(text), keys_of(kEveryKey));
+}
+
+TEST(Settings, a_pin_is_a_hash) {
+  for (const char* pin : {"''", "'$6$saltsalt$hash-as-crypt-writes-it'", "'$y$j9T$01234567890123456789'"})
+    EXPECT_EQ(error_of(std::string("[exhibition]\npin = ") + pin), "accepted") << pin;
+  for (const char* pin : {"4711", "'4711'", "'$6$'", "'plain text that is long enough'"})
+    EXPECT_THAT(error_of(std::string("[exhibition]\npin = ") + pin), HasSubstr("not the PIN itself")) << pin;
 }
 
 TEST(SettingsExample, the_manual_names_every_key) {
