@@ -112,6 +112,23 @@ TEST_F(ExhibitionTest, a_visit_ends_by_itself_and_leaves_nothing) {
   EXPECT_EQ(whole_file(station_->deck()), original_);
 }
 
+TEST_F(ExhibitionTest, a_model_server_that_crashes_in_a_visit_brings_none_of_its_edits_back) {
+  open_doors("");
+  begin_visit();
+  station_->select_middle();
+  station_->pull_arrow(50);
+  station_->release();
+  ASSERT_FALSE(station_->kiosk().wait_for("drag committed").empty());
+  station_->kiosk().skip_lines();
+  station_->kill_model_server();
+  station_->start_model_server();
+  ASSERT_FALSE(station_->kiosk().wait_for("exhibition over").empty());
+  ASSERT_FALSE(station_->kiosk().wait_for("exhibition show").empty());
+  ASSERT_FALSE(station_->kiosk().wait_for("exhibition deck").empty());
+  EXPECT_TRUE(station_->kiosk().last("generation ").ends_with("changed 0")) << station_->kiosk().last("generation ");
+  EXPECT_EQ(whole_file(station_->deck()), original_);
+}
+
 TEST_F(ExhibitionTest, files_are_closed_and_only_the_pin_leads_out) {
   open_doors("");
   const auto before = files();
