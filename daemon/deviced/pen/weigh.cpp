@@ -68,8 +68,8 @@ class WeighingThread {
       sleep_until(due_ns);
       const std::int64_t now_ns = clock_.now_ns();
       if (go_on_.exchange(false)) weighing_.go_on(now_ns);
-      // After the guard had to end a force none follows.
-      if (guard_.is_tripped()) tripped_ = true;
+      // After the guard had to end a force none follows. Where it ended none, the weighing goes on.
+      if (guard_.is_tripped() && forces_) tripped_ = true;
       const Eigen::Vector3d newton = weighing_.tick(pen_.read(now_ns), now_ns);
       send(now_ns, tripped_ ? Eigen::Vector3d::Zero() : newton);
       step_ = weighing_.step();
@@ -81,8 +81,9 @@ class WeighingThread {
     }
   }
   void send(std::int64_t now_ns, const Eigen::Vector3d& newton) {
+    forces_ = !newton.isZero();
     pen_.send(now_ns, {newton, now_ns + kForceValidNs});
-    if (newton.isZero()) guard_.acknowledge();
+    if (!forces_) guard_.acknowledge();
     if (!pen_.is_stuck(now_ns)) guard_.beats.fetch_add(1);
   }
 
@@ -93,6 +94,7 @@ class WeighingThread {
   std::atomic<WeighingStep> step_ = WeighingStep::wait_for_pen;
   std::atomic<bool> go_on_ = false, stop_ = false, tripped_ = false;
   bool running_ = false;
+  bool forces_ = false;  ///< the last send asked for a force; of the thread alone
   StartedThread thread_;
 };
 
