@@ -208,12 +208,18 @@ class Tab:
         raise Failed(f"the keyboard doesn't reach {selector}; it is at {self.run('document.activeElement.outerHTML.slice(0, 300)')}")
 
     def click(self, selector):
-        x, y = self.run(
-            f"(() => {{ const it = document.querySelector({json.dumps(selector)}); it.scrollIntoView({{block: 'center'}});"
-            " const box = it.getBoundingClientRect(); return [box.x + box.width / 2, box.y + box.height / 2]; })()"
-        )
-        for kind in ("mousePressed", "mouseReleased"):
-            self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", clickCount=1)
+        """Presses it where it lies. What comes from the station can move it before the button is up: then again, as a user would."""
+        for _ in range(5):
+            x, y = self.run(
+                f"(() => {{ const it = document.querySelector({json.dumps(selector)}); it.scrollIntoView({{block: 'center'}});"
+                " window.pressed = false; it.addEventListener('click', () => { window.pressed = true; }, {once: true});"
+                " const box = it.getBoundingClientRect(); return [box.x + box.width / 2, box.y + box.height / 2]; })()"
+            )
+            for kind in ("mousePressed", "mouseReleased"):
+                self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", clickCount=1)
+            if self.run("window.pressed !== false"):
+                return
+        raise Failed(f"five presses at {selector} reached something else")
 
     def choose_files(self, selector, paths):
         node = self.call("Runtime.evaluate", expression=f"document.querySelector({json.dumps(selector)})")["result"]["objectId"]
