@@ -79,7 +79,7 @@ int read_range(int fd, char* data, std::size_t size, std::size_t offset) {
 }  // namespace
 
 FileBytes FileBytes::unpacked(FileBytes file, std::unique_ptr<char[]> text, std::size_t size) {
-  file.packed_ = std::exchange(file.data_, std::move(text));
+  file.packed_ = std::exchange(file.data_, std::shared_ptr<char[]>(std::move(text)));
   file.packed_size_ = std::exchange(file.size_, size);
   return file;
 }
@@ -90,6 +90,27 @@ FileBytes FileBytes::copy_of(std::string_view bytes, const FileIdentity& identit
   file.data_.reset(new char[bytes.size() + 1]);
   if (!bytes.empty()) std::memcpy(file.data_.get(), bytes.data(), bytes.size());
   file.data_[bytes.size()] = '\0';
+  file.identity_ = identity;
+  return file;
+}
+
+FileBytes FileBytes::of_pieces(std::span<const std::string_view> pieces, const FileIdentity& identity) {
+  std::vector<std::size_t> begins{0};
+  for (const std::string_view piece : pieces) begins.push_back(begins.back() + piece.size());
+  FileBytes file;
+  file.size_ = begins.back();
+  file.data_.reset(new char[file.size_ + 1]);
+  prefer_large_pages(file.data_.get(), file.size_);
+  parallel_for(file.size_, kReadPiece, [&](std::size_t begin, std::size_t end) {
+    std::size_t p = static_cast<std::size_t>(std::upper_bound(begins.begin(), begins.end(), begin) - begins.begin()) - 1;
+    while (begin < end) {
+      const std::string_view part = pieces[p].substr(begin - begins[p], end - begin);
+      if (!part.empty()) std::memcpy(file.data_.get() + begin, part.data(), part.size());
+      begin += part.size();
+      ++p;
+    }
+  });
+  file.data_[file.size_] = '\0';
   file.identity_ = identity;
   return file;
 }

@@ -26,7 +26,7 @@ struct FileIdentity {
 };
 
 /// A file's bytes in private memory: later changes or truncation of the file on disk don't reach them (a mapping would
-/// raise SIGBUS). The text is followed by one NUL that isn't counted.
+/// raise SIGBUS). The text is followed by one NUL that isn't counted. Copies share the bytes.
 class FileBytes {
  public:
   /// What the file says: its bytes, or what they unpack to (base/compression.h).
@@ -42,12 +42,14 @@ class FileBytes {
   static FileBytes unpacked(FileBytes file, std::unique_ptr<char[]> text, std::size_t size);
   /// A file that another process has read. Throws std::bad_alloc.
   static FileBytes copy_of(std::string_view bytes, const FileIdentity& identity);
+  /// A file that was written from these pieces. Throws std::bad_alloc.
+  static FileBytes of_pieces(std::span<const std::string_view> pieces, const FileIdentity& identity);
 
  private:
   friend Result<FileBytes> read_file(int descriptor, const std::filesystem::path& path);
-  std::unique_ptr<char[]> data_;
+  std::shared_ptr<char[]> data_;  ///< not changed once it is filled
   std::size_t size_ = 0;
-  std::unique_ptr<char[]> packed_;
+  std::shared_ptr<char[]> packed_;
   std::size_t packed_size_ = 0;
   FileIdentity identity_;
 };

@@ -268,6 +268,7 @@ Result<Document> DocumentKeeper::read_again(const fs::path& path, OpenedDeck ope
   options.length_unit = now.settings.length_unit;
   options.settings = now.settings;
   options.judged_by = now.current().judging;  // a criteria file may have been removed
+  if (!grown) options.like = &now.current();
   options.history_bytes = now.history_bytes;
   Result<Document> next = mesh::document::open(path, std::move(opened), options);
   if (!next) return next;
@@ -334,7 +335,12 @@ Result<void> DocumentKeeper::remove_intents(const fs::path& deck) const {
 /// indices differ and the history begins anew.
 Result<DocumentKeeper::ReadySave> DocumentKeeper::make_ready(mesh::deck::StagedSave staged, const Progress& progress) {
   OpenDocument& open = *open_;
-  Result<OpenedDeck> opened = decks_.open(staged, open.document.path, open.request.sandboxed, progress);
+  std::optional<OpenedDeck> known;
+  // The cards of a deck that nobody vouches for are looked at by the importer only.
+  if (!open.request.sandboxed) known = staged.with_moved_nodes(open.document.opened->model, open.document.current().model);
+  if (known && !progress(1)) return fail(cancelled());
+  Result<OpenedDeck> opened =
+      known ? Result<OpenedDeck>(std::move(*known)) : decks_.open(staged, open.document.path, open.request.sandboxed, progress);
   if (!opened) return fail(std::move(opened.error()));
   Result<Document> next = read_again(open.document.path, std::move(*opened));
   if (!next) return fail(std::move(next.error()));
@@ -375,6 +381,7 @@ Result<ipc::Saved> DocumentKeeper::finish_save(ReadySave save) {
     open.unfinished = std::move(save);
     return fail(std::move(error));
   }
+  save.staged.tell_in_place(*save.next.deck);
   const Journal old = go_on_with(std::move(save.next), std::move(save.journal), save.saved);
   // If this fails the intent stays, and the next opening of the deck retires the journal.
   if (retire_open(folder_, old, ".saved")) folder_.remove(save.intent);

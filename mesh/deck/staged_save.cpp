@@ -8,9 +8,13 @@
 #include "base/compression.h"
 #include "mesh/deck/assembly/file_set.h"
 #include "mesh/deck/data/deck.h"
+#include "mesh/deck/data/derived.h"
 #include "mesh/deck/data/on_disk.h"
+#include "mesh/deck/editing/deck_card.h"
 #include "mesh/deck/editing/text_changes.h"
 #include "mesh/deck/editing/text_place.h"
+#include "mesh/deck/formats/formats.h"
+#include "mesh/model/topology_change.h"
 
 namespace prismesh::mesh::deck {
 namespace {
@@ -174,6 +178,17 @@ StagedSave::File found_before(const Deck& deck, const FilePlan& plan, const Text
   return file;
 }
 
+bool moves_nodes_only(const TextChanges& text) {
+  const CardCounts& counts = text.counts;
+  const std::size_t others = counts.nodes_added + counts.nodes_removed + counts.shells_changed + counts.shells_added +
+                             counts.shells_removed + counts.elements_added + counts.shells_turned + text.set_cards;
+  if (others > 0) return false;
+  for (const std::vector<Replacement>& replacements : text.by_file)
+    for (const Replacement& each : replacements)
+      if (each.text.size() != each.length) return false;
+  return true;
+}
+
 std::string rounding_note(const Rounding& rounding) {
   char error[32];
   std::snprintf(error, sizeof error, "%.1e", rounding.largest_error);
@@ -247,8 +262,8 @@ Result<StagedSave> StagedSave::write(const Deck& deck, const Model& original, co
   const std::lock_guard lock(deck.on_disk->mutex);
   const bool packs = std::any_of(deck.files.begin(), deck.files.end(), [](const SourceFile& file) { return file.bytes.is_packed(); });
   const double of_cards = packs ? kShareOfCardsWithPacking : kShareOfCards, before_writing = of_cards + (packs ? kShareOfPacking : 0);
-  const Result<TextChanges> text = make_text(deck, original, model, part_of(progress, 0, of_cards));
-  if (!text) return fail(text.error());
+  Result<TextChanges> text = make_text(deck, original, model, part_of(progress, 0, of_cards));
+  if (!text) return fail(std::move(text.error()));
   StagedSave save;
   save.deck_ = &deck;
   save.target_ = target;
@@ -266,8 +281,8 @@ Result<StagedSave> StagedSave::write(const Deck& deck, const Model& original, co
   if (!staged) return fail(std::move(staged.error()));
   save.staged_ = std::move(*staged);
   for (std::size_t i = 0; i < plans->size(); ++i) save.files_[i].after = hash128((*pending)[i].pieces);
-  save.rounding_ = text->rounding;
   save.report_ = report_of(deck, *text, *plans);
+  save.text_ = std::move(*text);
   for (const Warning& warning : cut_off->warnings) save.add_note("of an earlier save: " + warning.message);
   return save;
 }
@@ -295,6 +310,41 @@ Result<OpenedDeck> StagedSave::open(const Progress& progress) const {
   StandIns stand_ins;
   for (auto& [file, by] : waiting()) stand_ins[canonical_name(file)] = by;
   return deck::open(deck_->files[0].path, progress, stand_ins);
+}
+
+std::optional<OpenedDeck> StagedSave::with_moved_nodes(const Model& original, const Model& model) const {
+  if (!in_place_ || has_begun() || !moves_nodes_only(text_) || !changes_between(original, model).empty()) return std::nullopt;
+  const OnDisk& known = *deck_->on_disk;
+  for (std::size_t f = 0; f < deck_->files.size(); ++f)
+    if (!known.files[f].as_read || (deck_->files[f].bytes.is_packed() && !text_.by_file[f].empty())) return std::nullopt;
+
+  auto saved = std::make_shared<Deck>(*deck_);
+  saved->on_disk = std::make_shared<OnDisk>();
+  saved->on_disk->files = known.files;
+  for (std::size_t i = 0; i < files_.size(); ++i) {
+    const std::size_t f = files_[i].index;
+    const FileIdentity& identity = staged_.files()[i].identity;
+    saved->files[f].bytes = FileBytes::of_pieces(content_of(deck_->files[f], text_.by_file[f]), identity);
+    saved->on_disk->files[f] = {identity, files_[i].after, true};
+  }
+  std::vector<Hash128> hashes;
+  for (const OnDisk::File& file : saved->on_disk->files) hashes.push_back(file.content);
+  saved->content = content_hash(saved->files, hashes);
+
+  OpenedDeck opened{saved, original};
+  const std::unique_ptr<const CardWriter> writer = card_writer(deck_->format);
+  for (const NodeIndex node : moved_nodes(original, model)) {
+    const DeckCard card = card_of(*saved, node);
+    const std::optional<Vec3> at = writer->node_coordinates(card.ref());
+    if (!at) return std::nullopt;
+    opened.model.positions.set(node.value, to_basic(saved->frames[card.run.frame], *at));
+  }
+  return opened;
+}
+
+void StagedSave::tell_in_place(const Deck& saved) const {
+  const std::lock_guard lock(saved.on_disk->mutex);
+  for (std::size_t i = 0; i < staged_.in_place(); ++i) saved.on_disk->files[files_[i].index].identity = staged_.files()[i].identity;
 }
 
 void StagedSave::leave() {

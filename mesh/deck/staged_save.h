@@ -11,7 +11,6 @@
 #include "base/hash.h"
 #include "base/progress.h"
 #include "mesh/deck/data/deck.h"
-#include "mesh/deck/editing/rounding.h"
 #include "mesh/deck/editing/text_changes.h"
 #include "mesh/deck/open.h"
 #include "mesh/deck/save_record.h"
@@ -40,7 +39,7 @@ class StagedSave {
 
   const SaveReport& report() const { return report_; }
   void add_note(std::string note) { report_.notes.push_back(std::move(note)); }
-  const Rounding& rounding() const { return rounding_; }
+  const Rounding& rounding() const { return text_.rounding; }
   const std::vector<File>& files() const { return files_; }
   /// The same files, with their places.
   const std::vector<StagedFiles::File>& places() const { return staged_.files(); }
@@ -52,6 +51,12 @@ class StagedSave {
   std::vector<std::pair<std::filesystem::path, std::filesystem::path>> waiting() const;
   /// Opens the deck as it will be once the files are in place. Only for a save to the deck's own path. Errors: those of open.
   Result<OpenedDeck> open(const Progress& progress = {}) const;
+  /// The deck as `open` would give it, without reading it: only if some nodes' coordinates are all that changes and no card gets longer or
+  /// shorter. The nodes' places are read from their new cards. `original`, `model`: those of `write`. Only for a save to the deck's own
+  /// path.
+  std::optional<OpenedDeck> with_moved_nodes(const Model& original, const Model& model) const;
+  /// Tells a deck that `open` or `with_moved_nodes` gave that its files are in place, so that the next save needn't read them to know them.
+  void tell_in_place(const Deck& saved) const;
   /// Replaces the files. While there are several, a record of the save is beside the main file. After an error, another call continues.
   /// Errors: those of StagedFiles::put_in_place and of SaveRecord::begin; another program has written one of the files since the save
   /// began, which is checked before the first is replaced, and again right before each.
@@ -73,7 +78,7 @@ class StagedSave {
   std::filesystem::path target_;
   bool in_place_ = false;
   SaveReport report_;
-  Rounding rounding_;
+  TextChanges text_;
   std::vector<File> files_;
   StagedFiles staged_;
   std::optional<SaveRecord> record_;  ///< while files are replaced

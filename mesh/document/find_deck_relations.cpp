@@ -60,4 +60,11 @@ std::shared_ptr<const DeckRelations> find_deck_relations(std::shared_ptr<const d
   return relations;
 }
 
+std::shared_ptr<const DeckRelations> carry_deck_relations(std::shared_ptr<const deck::Deck> saved, const DeckRelations& relations) {
+  auto carried = std::make_shared<DeckRelations>(relations);
+  carried->names = find_names(*saved);
+  carried->deck = std::move(saved);
+  return carried;
+}
+
 }  // namespace prismesh::mesh::document

@@ -8,6 +8,7 @@
 #include "mesh/document/deck_relations.h"
 #include "mesh/document/deck_settings.h"
 #include "mesh/document/find_deck_relations.h"
+#include "mesh/model/node_set.h"
 #include "mesh/quality/mass.h"
 #include "mesh/quality/report.h"
 #include "mesh/quality/target_size.h"
@@ -70,15 +71,26 @@ Result<Settled> find_settings(const std::filesystem::path& path, const deck::Dec
   return Settled{std::move(settings), std::make_shared<const Judging>(std::move(judging))};
 }
 
-std::shared_ptr<const Generation> first_generation(std::shared_ptr<const DeckRelations> relations, Model model, const Settled& settled) {
+void judge(const Model& model, const Judging& judging, const Generation* like, Generation& first) {
+  if (like == nullptr) {
+    first.quality = quality::judge_model(model, sized(judging));
+    first.counts = quality::count(first.quality);
+    return;
+  }
+  first.quality = like->quality;
+  first.counts = like->counts;
+  quality::rejudge(model, sized(judging), shells_touching(model, moved_nodes(like->model, model)), first.quality, first.counts);
+}
+
+std::shared_ptr<const Generation> first_generation(std::shared_ptr<const DeckRelations> relations, Model model, const Settled& settled,
+                                                   const Generation* like) {
   auto first = std::make_shared<Generation>();
   first->relations = std::move(relations);
   first->node_marks = ChunkedArray<std::uint8_t>::filled(model.node_count());
   first->shell_marks = ChunkedArray<std::uint8_t>::filled(model.shell_count());
   first->parts = std::make_shared<const std::vector<PartState>>(model.parts->size());
   first->judging = settled.judging;
-  first->quality = quality::judge_model(model, sized(*settled.judging));
-  first->counts = quality::count(first->quality);
+  judge(model, *settled.judging, like != nullptr && like->judging == settled.judging ? like : nullptr, *first);
   first->clusters = clusters_of(*settled.judging, model);
   first->weight = quality::mass_properties(model);
   first->surface = std::make_shared<const Model>(model);
@@ -90,7 +102,9 @@ std::shared_ptr<const Generation> first_generation(std::shared_ptr<const DeckRel
 }  // namespace
 
 Result<Document> open(const std::filesystem::path& path, deck::OpenedDeck opened, const OpenOptions& options) {
-  const std::shared_ptr<const DeckRelations> relations = find_deck_relations(opened.deck, opened.model);
+  const bool same_cards = options.like != nullptr && options.like->relations->deck->references == opened.deck->references;
+  const std::shared_ptr<const DeckRelations> relations =
+      same_cards ? carry_deck_relations(opened.deck, *options.like->relations) : find_deck_relations(opened.deck, opened.model);
   Result<Settled> settled = find_settings(path, *opened.deck, opened.model, relations->names, options);
   if (!settled) return fail(std::move(settled.error()));
   Document document;
@@ -98,7 +112,7 @@ Result<Document> open(const std::filesystem::path& path, deck::OpenedDeck opened
   document.deck = std::move(opened.deck);
   document.settings = settled->settings;
   document.history_bytes = options.history_bytes;
-  document.opened = first_generation(relations, std::move(opened.model), *settled);
+  document.opened = first_generation(relations, std::move(opened.model), *settled, options.like);
   document.generations = {document.opened};
   return document;
 }
