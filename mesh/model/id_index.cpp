@@ -10,6 +10,8 @@ namespace {
 
 /// Max slots of a direct table for each id: with more, a binary search is cheaper than the memory.
 constexpr std::uint64_t kSlotsPerId = 8;
+/// Max spans for each id. Real decks number each part from a round number on: a span holds a piece of one run.
+constexpr std::uint64_t kSpansPerId = 2;
 
 }  // namespace
 
@@ -30,7 +32,10 @@ IdIndex::IdIndex(std::span<const std::int64_t> ids) {
     if (contiguous_) return;
     reserve_large(ids_, ids.size());
     ids_.assign(ids.begin(), ids.end());
-    if (!dense) return;
+    if (!dense) {
+      build_spans();
+      return;
+    }
     reserve_large(dense_, range + 1);
     dense_.assign(range + 1, kNotFound);
     for (std::size_t i = 0; i < ids.size(); ++i) dense_[static_cast<std::uint64_t>(ids[i] - first_)] = static_cast<std::uint32_t>(i);
@@ -78,12 +83,32 @@ void IdIndex::build_sorted(std::span<const std::int64_t> ids) {
     order_.push_back(index);
   }
   size_ = ids_.size();
+  build_spans();
 }
 
+void IdIndex::build_spans() {
+  const auto offset_of = [this](std::size_t rank) { return static_cast<std::uint64_t>(ids_[rank]) - static_cast<std::uint64_t>(first_); };
+  const std::uint64_t range = offset_of(ids_.size() - 1);
+  for (span_bits_ = 0; (range >> span_bits_) / kSpansPerId >= ids_.size();) ++span_bits_;
+  const std::size_t count = static_cast<std::size_t>(range >> span_bits_) + 1;
+  reserve_large(spans_, count + 1);
+  for (std::size_t rank = 0; rank < ids_.size(); ++rank)
+    spans_.resize(std::max(spans_.size(), static_cast<std::size_t>(offset_of(rank) >> span_bits_) + 1), static_cast<std::uint32_t>(rank));
+  spans_.push_back(static_cast<std::uint32_t>(ids_.size()));
+}
+
+/// `id` isn't below the first.
 std::uint32_t IdIndex::find_sorted(std::int64_t id) const {
-  const auto at = std::lower_bound(ids_.begin(), ids_.end(), id);
-  if (at == ids_.end() || *at != id) return kNotFound;
-  return index_at(static_cast<std::size_t>(at - ids_.begin()));
+  const std::uint64_t span = (static_cast<std::uint64_t>(id) - static_cast<std::uint64_t>(first_)) >> span_bits_;
+  if (span + 1 >= spans_.size()) return kNotFound;
+  const std::size_t begin = spans_[span], end = spans_[span + 1];
+  if (begin == end || id < ids_[begin]) return kNotFound;
+  // In a run that counts up by one the distance from the first is the place.
+  const std::uint64_t ahead = static_cast<std::uint64_t>(id) - static_cast<std::uint64_t>(ids_[begin]);
+  if (ahead < end - begin && ids_[begin + ahead] == id) return index_at(begin + ahead);
+  const auto last = ids_.begin() + static_cast<std::ptrdiff_t>(end);
+  const auto at = std::lower_bound(ids_.begin() + static_cast<std::ptrdiff_t>(begin), last, id);
+  return at == last || *at != id ? kNotFound : index_at(static_cast<std::size_t>(at - ids_.begin()));
 }
 
 IdIndex& IdIndex::own(std::shared_ptr<const IdIndex>& index) {

@@ -10,8 +10,8 @@
 
 namespace prismesh::mesh {
 
-/// Costs no memory for ids that count up by one, 8 bytes an id for other ascending ids, and 12 for ids in any order, plus a
-/// direct table where the ids are dense enough.
+/// Costs no memory for ids that count up by one, 8 bytes an id for other ascending ids, and 12 for ids in any order, plus a direct table
+/// where the ids are dense enough, and up to 8 bytes an id for a table of spans where they aren't.
 class IdIndex {
  public:
   static constexpr std::uint32_t kNotFound = 0xffffffffu;
@@ -63,6 +63,7 @@ class IdIndex {
   std::uint32_t find_sorted(std::int64_t id) const;
   void build_dense(std::span<const std::int64_t> ids, std::uint64_t range);
   void build_sorted(std::span<const std::int64_t> ids);
+  void build_spans();
 
   std::size_t size_ = 0;
   std::int64_t first_ = 0;
@@ -70,6 +71,9 @@ class IdIndex {
   std::vector<std::int64_t> ids_;     ///< ascending
   std::vector<std::uint32_t> order_;  ///< rank -> index; empty where both are the same
   std::vector<std::uint32_t> dense_;  ///< id - first_ -> index, where the ids are dense enough
+  int span_bits_ = 0;
+  std::vector<std::uint32_t>
+      spans_;  ///< where ids aren't dense: (id - first_) >> span_bits_ -> rank of the span's first id; one more at the end
   std::vector<std::int64_t> duplicates_;
   std::shared_ptr<const IdIndex> base_;  ///< if set, only it and the members below count
   std::vector<Change> changes_;          ///< ascending by id

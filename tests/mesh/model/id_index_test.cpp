@@ -60,6 +60,16 @@ TEST(IdIndex, is_like_a_map_whatever_the_ids) {
   expect_like_a_map({1, 1, 4'000'000'000, 4'000'000'000, 4'000'000'000});
 }
 
+TEST(IdIndex, finds_ids_of_parts_that_begin_at_round_numbers) {
+  Ids ids;
+  for (std::int64_t part = 1; part < 40; ++part)
+    for (std::int64_t i = 0; i < 100 + part; ++i) ids.push_back(part * part * 10'000'000 + 1 + i + (i > 50 ? 7 : 0));
+  expect_like_a_map(ids);
+  std::mt19937 random(5);
+  std::shuffle(ids.begin(), ids.end(), random);
+  expect_like_a_map(ids);
+}
+
 TEST(IdIndex, is_empty_without_ids) {
   const IdIndex index{Ids{}};
   EXPECT_EQ(index.size(), 0u);
