@@ -209,9 +209,13 @@ run_soak() {
   fi
   say "Power cuts of a machine under user-mode Linux"
   status=0
-  if step "build: release" configure_and_build release -DPRISMESH_TESTS=ON -- prismesh prismesh-modeld prismesh-intake; then
+  if step "build: release" configure_and_build release -DPRISMESH_TESTS=ON -- prismesh prismesh-modeld prismesh-intake plants_preload; then
     tests/power/cut.py build/bin --cuts $((seconds / 7 < 500 ? seconds / 7 : 500)) --images $((seconds / 2)) --seed "$seed" --jobs "$(nproc)" || status=$?
     if [ "$status" -eq 77 ]; then skipped=$((skipped + 1)); else count_one "tests/power/cut.py --seed $seed" "$status"; fi
+    say "Planted faults of durability"
+    status=0
+    tests/power/planted.py build/bin build/bin/libplants_preload.so --seed "$seed" || status=$?
+    if [ "$status" -eq 77 ]; then skipped=$((skipped + 1)); else count_one "tests/power/planted.py --seed $seed" "$status"; fi
   fi
   say "A hundred million random ticks of the haptic pen's safety"
   status=0

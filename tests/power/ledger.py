@@ -53,11 +53,16 @@ def upload_files(number, seed):
     return {path: noise.randbytes(noise.choice((90, 3000, 70000))) for path in ("main.k", "parts/door.k")[:noise.choice((1, 2))]}
 
 
+def hashes_of(files):
+    return {path: hashlib.sha256(content).hexdigest() for path, content in files.items()}
+
+
 class Ledger:
     """Follows the lines of sessions on one disk. Two steps can be under way at most: one of the editor, one of the sender."""
 
     def __init__(self):
         self.now = self.saved = (0.0,) * NODES
+        self.been = {self.now}
         self.undone = []  # states that undo leads to in this life of modeld
         self.copied = {}  # heights of copies by name
         self.models = {}  # hash: {path: SHA-256}
@@ -67,17 +72,17 @@ class Ledger:
         self.acknowledged = {"editor": 0, "sender": 0}
 
     def read(self, line):
+        """Returns what is wrong: none of these steps may be refused."""
         step = json.loads(line)
         who = step.get("who")
-        if who is None:
-            return
+        if "refused" in step:
+            return [f"{self.pending[who]['do']} was refused: {step['refused']}"]
         if "do" in step:
             self.pending[who] = step
         elif "done" in step:
             self._apply(self.pending.pop(who))
             self.acknowledged[who] += 1
-        elif "refused" in step:
-            raise ValueError(f"{self.pending[who]['do']} was refused: {step['refused']}")
+        return []
 
     def after(self, step):
         """Heights after an editor's step."""
@@ -93,6 +98,7 @@ class Ledger:
         if kind == "move":
             self.undone.append(self.now)
             self.now = self.after(step)
+            self.been.add(self.now)
             self.edits.append((step["first"], step["last"], step["by"]))
         elif kind == "undo":
             self.now = self.undone.pop()
@@ -103,7 +109,7 @@ class Ledger:
             self.copied[step["name"]] = self.now
         elif kind == "publish":
             files = upload_files(step["number"], step["seed"])
-            self.models[step["model"]] = {path: hashlib.sha256(content).hexdigest() for path, content in files.items()}
+            self.models[step["model"]] = hashes_of(files)
             self.removed.discard(step["model"])
         elif kind == "remove":
             self.models.pop(step["model"], None)
@@ -119,6 +125,25 @@ class Ledger:
         wrong += self._judge_models(facts["models"], sending)
         # Undo leads back to before a restart by what the journal holds; a session undoes its own edits only.
         self.undone = []
+        return wrong
+
+    def judge_spoilt(self, out):
+        """As judge, where the disk has given back another bit: data may be missing or refused, but nothing may be there that never was."""
+        facts = json.loads((out / "facts.json").read_text())
+        editing, sending = self.pending.get("editor"), self.pending.get("sender")
+        been = self.been | ({self.after(editing)} if editing else set())
+        wrong = []
+        try:
+            if heights_in(out / "copy") not in been:
+                wrong.append("the document is as it never was")
+        except (ValueError, OSError) as problem:
+            wrong.append(f"the document: {problem}")
+        sent = dict(self.models)
+        if sending and sending["do"] == "publish":
+            sent[sending["model"]] = hashes_of(upload_files(sending["number"], sending["seed"]))
+        for model, found in facts["models"].items():
+            if "refused" not in found and (found["manifest"] != model or found["files"] != sent.get(model)):
+                wrong.append(f"the model {model[:8]} has other bytes")
         return wrong
 
     def _judge_deck(self, out, step):
@@ -176,7 +201,7 @@ class Ledger:
         may_be_there, may_be_gone = {}, set()
         if step and step["do"] == "publish":
             files = upload_files(step["number"], step["seed"])
-            may_be_there[step["model"]] = {path: hashlib.sha256(content).hexdigest() for path, content in files.items()}
+            may_be_there[step["model"]] = hashes_of(files)
         elif step and step["do"] == "remove":
             may_be_gone.add(step["model"])
         for model, files in self.models.items():

@@ -53,7 +53,20 @@ class Intake:
         self.link = context.wrap_socket(socket.create_connection(("127.0.0.1", port), 60))
         self.left = b""
 
-    def ask(self, method, path, body=b"", accepts=(200, 201, 204), **headers):
+    def ask(self, method, path, body=b"", **headers):
+        """The answer's body and fields. Raises Failed for any other answer than a good one, also where the connection ends."""
+        try:
+            status, answer, fields = self._ask(method, path, body, headers)
+            while status == 429:  # asked too often
+                time.sleep(0.1)
+                status, answer, fields = self._ask(method, path, body, headers)
+        except OSError as problem:
+            raise Failed(f"{method} {path}: {problem}") from None
+        if status not in (200, 201, 204):
+            raise Failed(f"{method} {path}: {status} {answer.decode(errors='replace')}")
+        return answer, fields
+
+    def _ask(self, method, path, body, headers):
         lines = [f"{method} {path} HTTP/1.1", f"Host: 127.0.0.1:{self.port}", f"Content-Length: {len(body)}"]
         if self.token:
             lines.append(f"Authorization: Bearer {self.token}")
@@ -69,9 +82,7 @@ class Intake:
         while len(self.left) < size:
             self._read()
         answer, self.left = self.left[:size], self.left[size:]
-        if status not in accepts:
-            raise Failed(f"{method} {path}: {status} {answer.decode(errors='replace')}")
-        return answer, fields
+        return status, answer, fields
 
     def _read(self):
         piece = self.link.recv(1 << 16)
@@ -198,6 +209,7 @@ class Station:
                 models[model] = intake.fetch(model)
             except Failed as problem:
                 models[model] = {"refused": str(problem)}
+                intake = Intake(self.port, token)  # it ends the connection rather than give out other bytes
         (out / "facts.json").write_text(json.dumps({"models": models, "journalled": state.get("journalled_edits"), "warnings": state.get("warnings", [])}))
         return state
 
