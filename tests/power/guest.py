@@ -74,7 +74,7 @@ class Guest:
         self.own_all()
         self.station = programs.Station(self.settings["programs"], self.disk, self.out, "/run/station", self.settings.get("environment"))
         try:
-            self.station.facts(self.out, self.settings["token"])
+            self.station.facts(self.out, self.settings["token"], self.settings["tokens"])
         except programs.Failed as problem:
             self.say(lost=str(problem))
             return
@@ -106,11 +106,11 @@ class Guest:
     def step(self, who, do, fields, act):
         self.say(who=who, do=do, **fields)
         try:
-            act()
+            answer = act()
         except programs.Failed as problem:
             self.say(who=who, refused=str(problem))
             raise
-        self.say(who=who, done=do)
+        self.say(who=who, done=do, **({"token": answer} if do == "pair" else {}))
 
     def edit(self):
         chance = random.Random(self.settings["seed"])
@@ -143,6 +143,10 @@ class Guest:
             if len(published) > RESTING and chance.random() < 0.25:
                 model = published.pop(chance.randrange(len(published) - RESTING))
                 self.step("sender", "remove", {"model": model}, lambda model=model: intake.ask("DELETE", f"/models/{model}"))
+                continue
+            if chance.random() < 0.05:
+                name = f"{self.settings['name']} {number}"
+                self.step("sender", "pair", {"name": name}, lambda name=name: self.station.pair(name))
                 continue
             files = ledger.upload_files(number, self.settings["seed"])
             model = programs.model_of(files, "main.k")

@@ -67,6 +67,7 @@ class Ledger:
         self.copied = {}  # heights of copies by name
         self.models = {}  # hash: {path: SHA-256}
         self.removed = set()
+        self.tokens = []
         self.pending = {}  # by who: the step
         self.edits = []  # (first, last, dz) of all that the document holds; None where that isn't known by intents
         self.acknowledged = {"editor": 0, "sender": 0}
@@ -81,6 +82,8 @@ class Ledger:
             self.pending[who] = step
         elif "done" in step:
             self._apply(self.pending.pop(who))
+            if "token" in step:
+                self.tokens.append(step["token"])
             self.acknowledged[who] += 1
         return []
 
@@ -123,6 +126,7 @@ class Ledger:
         editing, sending = self.pending.pop("editor", None), self.pending.pop("sender", None)
         wrong += self._judge_deck(out, editing)
         wrong += self._judge_models(facts["models"], sending)
+        wrong += [f"a token that was given isn't good any more: {problem}" for problem in facts["void"].values()]
         # Undo leads back to before a restart by what the journal holds; a session undoes its own edits only.
         self.undone = []
         return wrong
@@ -215,6 +219,6 @@ class Ledger:
                 wrong.append(f"the model {model[:8]} " + ("has come back" if model in self.removed else "was never sent"))
             elif facts["manifest"] != model or facts["files"] != files:
                 wrong.append(f"the model {model[:8]} has other bytes")
-        if step and (step["model"] in found) == (step["do"] == "publish"):
+        if step and "model" in step and (step["model"] in found) == (step["do"] == "publish"):
             self._apply(step)
         return wrong

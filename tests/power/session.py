@@ -50,12 +50,12 @@ class Session:
         (self.work / "disk" / "copies").mkdir()
         station = Station(self.programs, self.work / "disk", self.work, self.work / "run")
         station.start()
-        token = station.pair()
+        token = station.pair("power cuts")
         station.stop()
         return token
 
     def boot(self, name, disks=(), **more):
-        settings = {"name": name, "programs": str(self.programs), "token": self.token, "seed": self.seed, "steps": FREE_STEPS, "options": self.options,
+        settings = {"name": name, "programs": str(self.programs), "token": self.token, "tokens": self.ledger.tokens, "seed": self.seed, "steps": FREE_STEPS, "options": self.options,
                     "environment": self.environment, **more}
         return machine.Machine(self.work, settings, [self.images / "image", *disks])
 
@@ -119,7 +119,7 @@ class Session:
         if wrong:
             return wrong
         try:
-            station.facts(out, self.token)
+            station.facts(out, self.token, told.tokens)
             wrong = [each + where for each in (told.judge_spoilt(out) if spoil else told.judge(out))]
         except Failed as problem:
             # With another bit in it, a file may be refused.

@@ -173,10 +173,10 @@ class Station:
     def logs(self):
         return "".join(path.read_text(errors="replace") for path in sorted(self.work.glob("*.log")))
 
-    def pair(self):
-        """A token for all that a session does."""
+    def pair(self, name):
+        """A token of that name, for all that a session does."""
         code = Local(self.runtime / "intake.sock").ask("make_pairing_code", scopes=["read", "upload", "remove"])["code"]
-        body = json.dumps({"secret": "-".join(code.split("-")[4:]), "name": "power cuts"}).encode()
+        body = json.dumps({"secret": "-".join(code.split("-")[4:]), "name": name}).encode()
         return json.loads(Intake(self.port).ask("POST", "/pair", body, Content_Type="application/json")[0])["token"]
 
     def open_deck(self):
@@ -190,8 +190,8 @@ class Station:
                 return self.modeld.ask("open", path=str(self.disk / "deck" / "main.k"))
             time.sleep(0.01)
 
-    def facts(self, out, token):
-        """Writes what the station has into the folder: the deck's files as they were found and as modeld saves a copy, what intake gives out."""
+    def facts(self, out, token, tokens=()):
+        """tokens: others that were given. Writes what the station has into the folder: the deck's files as they were found and as modeld saves a copy, what intake gives out."""
         copy_files(self.disk / "deck", out / "found")
         for made in (self.disk / "copies").iterdir():
             copy_files(made, out / "copies" / made.name)
@@ -210,7 +210,13 @@ class Station:
             except Failed as problem:
                 models[model] = {"refused": str(problem)}
                 intake = Intake(self.port, token)  # it ends the connection rather than give out other bytes
-        (out / "facts.json").write_text(json.dumps({"models": models, "journalled": state.get("journalled_edits"), "warnings": state.get("warnings", [])}))
+        void = {}
+        for each in tokens:
+            try:
+                Intake(self.port, each).ask("GET", "/token")
+            except Failed as problem:
+                void[each] = str(problem)
+        (out / "facts.json").write_text(json.dumps({"models": models, "void": void, "journalled": state.get("journalled_edits"), "warnings": state.get("warnings", [])}))
         return state
 
     def stop(self, by_kill=False):
