@@ -60,6 +60,7 @@ def main():
     if missing:
         print(f"SKIPPED: no power is cut: {missing} isn't installed")
         return 77
+    machine.end_with_this_program()
     failed = (cuts(given) if given.cuts else 0) + (write_caches(given) if given.images else 0)
     return 1 if failed else 0
 

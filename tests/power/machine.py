@@ -24,6 +24,21 @@ def missing():
     return next((package for program, package in wanted.items() if not shutil.which(program, path=search)), None)
 
 
+RUNNING = set()
+
+
+def end_with_this_program():
+    """A machine's processes are a group of their own, which outlives a program that is interrupted or told to end."""
+
+    def end(number, _):
+        for each in list(RUNNING):
+            each.pull_the_plug()
+        os._exit(128 + number)
+
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, end)
+
+
 def memory_folder():
     """Where disks and the guest's memory lie: in memory if there is room and programs may run from there, as a guest's do; else with temporary files."""
     try:
@@ -72,6 +87,7 @@ class Machine:
              str(self.work / "guest.json")],
             stdin=subprocess.DEVNULL, stdout=self.console, stderr=subprocess.STDOUT, start_new_session=True,
             env={**os.environ, "TMPDIR": memory_folder()})
+        RUNNING.add(self)
 
     def pull_the_plug(self):
         """All of its processes, which are a group of their own."""
@@ -80,6 +96,7 @@ class Machine:
         except ProcessLookupError:
             pass
         self.process.wait()
+        RUNNING.discard(self)
         self.console.close()
 
     def said(self):
