@@ -118,7 +118,7 @@ Result<std::string> Folder::content(const std::string& name, std::size_t max_byt
   std::string text;
   for (;;) {
     const std::size_t had = text.size();
-    const std::size_t wanted = std::min(std::max(had, kFirstRead), max_bytes - had + 1);
+    const std::size_t wanted = std::min(std::max(had, kFirstRead), max_bytes - had) + 1;
     text.resize(had + wanted);
     const Result<std::size_t> got = read_at(*file, text.data() + had, wanted, had, path_ / name);
     if (!got) return fail(got.error());
