@@ -180,7 +180,7 @@ run_all_tests() {
 
 # run_soak MINUTES: runs what takes too long for every change. For half of the time the fuzz targets run; for the other half sanitized tests
 # run in random order and with new random numbers: random edits, daemons killed in the middle. Besides, it tries states of the disk after a
-# power cut: some 1,700 for each minute (100,800 in an hour), 100 million ticks of the haptic pen's safety, and 10
+# power cut: some 1,700 for each minute (100,800 in an hour), 500 power cuts of a machine in an hour and 1,800 states of its disk, 100 million ticks of the haptic pen's safety, and 10
 # million steps of the pen on real decks, and random input on the kiosk of an exhibition.
 run_soak() {
   local seconds=$(($1 * 60)) targets name end seed=$RANDOM status
@@ -206,6 +206,16 @@ run_soak() {
   if step "build: release" configure_and_build release -DPRISMESH_TESTS=ON -- faults_test prismesh prismesh-modeld; then
     PRISMESH_SEED=$seed PRISMESH_POWER_CUTS=$((seconds * 28)) build/bin/faults_test --gtest_brief=1 </dev/null || status=$?
     count_one "faults_test with PRISMESH_SEED=$seed" "$status"
+  fi
+  say "Power cuts of a machine under user-mode Linux"
+  status=0
+  if step "build: release" configure_and_build release -DPRISMESH_TESTS=ON -- prismesh prismesh-modeld prismesh-intake plants_preload; then
+    tests/power/cut.py build/bin --cuts $((seconds / 7 < 500 ? seconds / 7 : 500)) --images $((seconds / 2)) --seed "$seed" --jobs "$(nproc)" || status=$?
+    if [ "$status" -eq 77 ]; then skipped=$((skipped + 1)); else count_one "tests/power/cut.py --seed $seed" "$status"; fi
+    say "Planted faults of durability"
+    status=0
+    tests/power/planted.py build/bin build/bin/libplants_preload.so --seed "$seed" || status=$?
+    if [ "$status" -eq 77 ]; then skipped=$((skipped + 1)); else count_one "tests/power/planted.py --seed $seed" "$status"; fi
   fi
   say "A hundred million random ticks of the haptic pen's safety"
   status=0

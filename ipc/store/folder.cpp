@@ -17,6 +17,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t kFirstRead = std::size_t{1} << 16;
+
 std::string system_reason(int code) {
   if (code == ENOSPC || code == EDQUOT) return "the disk is full (" + std::generic_category().message(code) + ")";
   return std::generic_category().message(code);
@@ -112,12 +114,18 @@ Result<void> Folder::replace(const std::string& name, std::string_view content, 
 Result<std::string> Folder::content(const std::string& name, std::size_t max_bytes) const {
   const Result<Descriptor> file = read(name);
   if (!file) return fail(file.error());
-  std::string text(max_bytes + 1, '\0');
-  const Result<std::size_t> got = read_at(*file, text.data(), text.size(), 0, path_ / name);
-  if (!got) return fail(got.error());
-  if (*got > max_bytes) return fail((path_ / name).string(), "is longer than " + std::to_string(max_bytes) + " bytes");
-  text.resize(*got);
-  return text;
+  // Memory for what is there: the limit may be more than the machine has.
+  std::string text;
+  for (;;) {
+    const std::size_t had = text.size();
+    const std::size_t wanted = std::min(std::max(had, kFirstRead), max_bytes - had) + 1;
+    text.resize(had + wanted);
+    const Result<std::size_t> got = read_at(*file, text.data() + had, wanted, had, path_ / name);
+    if (!got) return fail(got.error());
+    text.resize(had + *got);
+    if (text.size() > max_bytes) return fail((path_ / name).string(), "is longer than " + std::to_string(max_bytes) + " bytes");
+    if (*got < wanted) return text;
+  }
 }
 
 Result<void> Folder::rename(const std::string& name, const Folder& to, const std::string& new_name) const {
