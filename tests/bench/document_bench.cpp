@@ -64,6 +64,22 @@ void translate_10k(benchmark::State& state) {
 }
 BENCHMARK(translate_10k)->Unit(benchmark::kMillisecond);
 
+/// An edit that names its 586 nodes while many others are selected: it must follow what moves.
+void translate_586_beside_a_selection(benchmark::State& state) {
+  Document document = million();
+  const Result<EditReport> selected = document::apply(document, Edit(Select{"1-" + std::to_string(state.range(0))}));
+  if (!selected) return state.SkipWithError(selected.error().text().c_str());
+  Translate translate;
+  translate.by = Vec3(0, 0, 1.5);
+  translate.shaping.on = "500000-500585";
+  for (auto _ : state) {
+    const Result<Prepared> prepared = prepare(document, translate);
+    if (!prepared) return state.SkipWithError(prepared.error().text().c_str());
+    benchmark::DoNotOptimize(prepared);
+  }
+}
+BENCHMARK(translate_586_beside_a_selection)->Arg(1'000)->Arg(100'000)->Unit(benchmark::kMillisecond);
+
 /// A drag of the patch in the middle of the million quads. `symmetric`: about a plane beside the patch, which doubles what moves.
 Edit drag_of(const char* kind, bool symmetric) {
   Edit edit = parse_edit(std::string("{") + kind + "}").value();
