@@ -8,7 +8,7 @@ out=$(realpath -m "$3")
 boot=$root.boot
 : "${SOURCE_DATE_EPOCH:?}"
 mkdir -p "$out"
-[ "$boot" -ef "$out/boot" ] || { rm -rf "$out/boot"; cp -a "$boot" "$out/boot"; }
+[ "$boot" -ef "$out/boot" ] || { rm -rf "${out:?}/boot"; cp -a "$boot" "$out/boot"; }
 rm -f "$out/root.img"
 mksquashfs "$root" "$out/root.img" -comp zstd -Xcompression-level "${PRISMESH_COMPRESSION:-12}" -b 256K -noappend -no-progress -quiet >/dev/null
 size=$(stat -c %s "$out/root.img")
@@ -22,6 +22,6 @@ veritysetup format "$out/root.img" "$out/root.img" --hash-offset=$tree --salt="$
 hash=$(sed -n 's/^Root hash:[[:space:]]*//p' "$out/verity")
 echo "$hash $tree" >"$out/root.hash"
 
-printf '%s' "boot=prismesh ro prismesh.root=$hash prismesh.tree=$tree quiet loglevel=3 panic=30 vt.global_cursor_default=0 systemd.show_status=false rd.shell=0${PRISMESH_BOOT_ARGUMENTS:+ $PRISMESH_BOOT_ARGUMENTS}" >"$out/cmdline"
+printf '%s' "boot=prismesh ro prismesh.hash=$hash prismesh.tree=$tree quiet loglevel=3 panic=30 vt.global_cursor_default=0 systemd.show_status=false rd.shell=0${PRISMESH_BOOT_ARGUMENTS:+ $PRISMESH_BOOT_ARGUMENTS}" >"$out/cmdline"
 "$(dirname "$0")/kernel.sh" "$boot/linuxx64.efi.stub" "$root/usr/lib/os-release" "$out/cmdline" "$boot/vmlinuz" "$boot/initrd.img" "$out/prismesh.unsigned.efi"
 sbsign --key "$keys/boot-db.key" --cert "$keys/boot-db.crt" --output "$out/prismesh.efi" "$out/prismesh.unsigned.efi" 2>/dev/null

@@ -61,7 +61,7 @@ cp "$root/usr/lib/systemd/boot/efi/linuxx64.efi.stub" "$root/usr/lib/systemd/boo
 find "$root" -xdev -type f -perm /6000 -exec chmod ug-s {} +
 mkdir -p "$root/usr/share/prismesh/image"
 chroot "$root" dpkg-query -W -f '${Package} ${Version}\n' | LC_ALL=C sort >"$root/usr/share/prismesh/image/packages"
-rm -rf "$root"/boot/* "$root"/vmlinuz* "$root"/initrd.img* "$root"/etc/ssh/ssh_host_* "$root"/etc/hostname "$root"/etc/hosts "$root"/etc/resolv.conf \
+rm -rf "${root:?}"/boot/* "$root"/vmlinuz* "$root"/initrd.img* "$root"/etc/ssh/ssh_host_* "$root"/etc/hostname "$root"/etc/hosts "$root"/etc/resolv.conf \
   "$root"/etc/*- "$root"/etc/ld.so.cache.* "$root"/var/lib/dbus/machine-id "$root"/var/lib/systemd/random-seed "$root"/tmp/* "$root"/run/*
 find "$root/var" -mindepth 1 -delete # it is on the data partition
 rm -rf "$root"/etc/initramfs-tools "$root"/etc/cron.* "$root"/etc/apt "$root"/etc/init.d "$root"/etc/rc?.d "$root"/usr/share/prismesh/desktop

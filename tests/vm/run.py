@@ -105,8 +105,8 @@ def prepare(image, disk, files):
         else:
             at.write_text(text)
     start, size = partition(disk, "prismesh-data")
-    subprocess.run(["mke2fs", "-q", "-F", "-t", "ext4", "-L", "prismesh-data", "-d", str(folder), "-E", f"offset={start},nodiscard", str(disk),
-                    f"{size // 1024}k"], check=True)
+    subprocess.run(["mke2fs", "-q", "-F", "-t", "ext4", "-b", "4096", "-L", "prismesh-data", "-d", str(folder), "-E", f"offset={start},nodiscard", str(disk),
+                    str(size // 4096)], check=True)
 
 
 def machine(out, disk, name, devices=(None, None), snapshot=False):

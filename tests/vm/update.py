@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Updates a station in an emulated machine: a good version is taken, an ill one is given up with its reason, a wrong signature and an older version
-are refused, and a power cut in the middle changes nothing that runs. Then Secure Boot with the image's own keys. `./station vm` runs it.
+are refused, and a power cut in the middle changes nothing that runs. Then what a damaged disk
+leads to, and Secure Boot with the image's own keys. `./station vm` runs it.
 
-Usage: update.py build/image --out out/vm [--only updates|secure]. Needs root and SOURCE_DATE_EPOCH. Each line is "ok: .." or "FAILED: ..".
+Usage: update.py build/image --out out/vm [--only updates|refusals|secure]. Needs root and SOURCE_DATE_EPOCH. Each line is "ok: .." or "FAILED: ..".
 
 The versions are made of the image's own root: same files, another version, packed faster; the ill one has a document daemon that ends at once.
 Their kernels get two more words, so that the console is on the serial port and the emulation is faster. Everything else is the image's."""
@@ -212,9 +213,73 @@ def updates(proof, versions, out):
         proof.check("and says why", re.search(r"Version 1.2 was given up: prismesh-modeld doesn't run; it says: .*", said) is not None, said)
         shown = guest.run("journalctl -b -o cat --no-pager -u prismesh-notice")
         proof.check("the reason was on the screen before the kiosk", "Version 1.2 was given up" in shown, shown)
+        guest.run("fallocate -l $(($(df --output=avail -B1 /data | tail -n 1) - 1000000)) /data/full")
+        said = guest.run("/usr/lib/prismesh/update/notice; rm /data/full", limit=120)
+        proof.check("a full disk is named on the screen", "The disk for models is full" in said, said)
         guest.power_off(300)
     finally:
         station.kill()
+
+
+def refusals(proof, versions, out):
+    """Damage of the disk: the screen has a sentence, and the models stay as they were."""
+    sealed = out / "sealed-1.0"
+    if not sealed.exists():
+        versions.seal("1.0")
+    run(SCRIPTS / "disk.sh", sealed, "1.0", versions.keys, out / "first.img")
+    disk = out / "damaged.img"
+    data, size = partition(out / "first.img", "prismesh-data")
+    root, _ = partition(out / "first.img", "prismesh-root-a")
+
+    def write(at, text):
+        with open(disk, "r+b") as file:
+            file.seek(at)
+            file.write(text)
+
+    def data_now():
+        with open(disk, "rb") as file:
+            file.seek(data)
+            return file.read(size)
+
+    def newer():
+        run("debugfs", "-w", "-R", "rm format", f"{disk}?offset={data}", capture_output=True)
+        (out / "format").write_text("2\n")
+        run("debugfs", "-w", "-R", f"write {out / 'format'} format", f"{disk}?offset={data}", capture_output=True)
+
+    def damaged_folder():
+        """The root folder's block: what e2fsck won't mend without asking."""
+        said = run("debugfs", "-R", "blocks /", f"{disk}?offset={data}", capture_output=True, text=True).stdout
+        write(data + 4096 * int(said.split()[0]), b"\xff" * 4096)
+
+    cases = (("with another byte in the root", lambda: write(root, b"x"), "aren't those that were signed", False),
+             ("without a data partition", lambda: run("sfdisk", "--quiet", "--delete", disk, "4"), "no partition prismesh-data", False),
+             ("with a data partition whose head is zeros", lambda: write(data, bytes(8192)), "data partition is damaged", False),
+             ("with a data partition whose first folder is garbage", damaged_folder, "data partition is damaged", True),
+             ("with data of a newer version", newer, "written by a newer version (format 2", True))
+    model = "*KEYWORD\n$ kept\n*END\n"
+    for number, (what, damage, sentence, checked) in enumerate(cases):
+        prepare(out / "first.img", disk, {"/var/lib/prismesh/models/kept.k": model})
+        at = data_now().find(model.encode())
+        damage()
+        before = data_now()
+        (out / "plain.vars").unlink(missing_ok=True)
+        station = Station(out, disk, None)
+        station.starts = 50 + number
+        guest = station.start()
+        try:
+            end = time.time() + 300
+            while time.time() < end and guest.process.poll() is None and "The station can't start" not in "".join(guest.console_text):
+                time.sleep(1)
+            time.sleep(3)
+            said = "".join(guest.console_text)
+            proof.check(f"{what} the screen says: .. {sentence} ..", sentence in said, said[-1500:])
+            picture = Picture(guest.screen(f"damage-{number}"))
+            picture.save(out / f"damage-{number}.png")
+        finally:
+            station.kill()
+        # The check of a file system writes its time.
+        after = data_now()
+        proof.check("    and the model is as it was", after[at:at + len(model)] == model.encode() and (checked or after == before))
 
 
 def secure(proof, versions, out):
@@ -266,7 +331,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("image")
     parser.add_argument("--out", required=True)
-    parser.add_argument("--only", choices=("updates", "secure"))
+    parser.add_argument("--only", choices=("updates", "refusals", "secure"))
     arguments = parser.parse_args()
     out = pathlib.Path(arguments.out).absolute()
     out.mkdir(parents=True, exist_ok=True)
@@ -275,10 +340,9 @@ def main():
         versions = Versions(pathlib.Path(arguments.image).absolute(), out)
         if not (out / "other").exists():
             run(SCRIPTS / "keys.sh", out / "other")
-        if arguments.only != "secure":
-            updates(proof, versions, out)
-        if arguments.only != "updates":
-            secure(proof, versions, out)
+        for name, part in (("updates", updates), ("refusals", refusals), ("secure", secure)):
+            if arguments.only in (None, name):
+                part(proof, versions, out)
     except Gone as problem:
         proof.check("the machine did as it was asked", False, str(problem))
     print(f"{time.time() - began:.0f} s; consoles are in {out}")
