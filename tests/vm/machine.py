@@ -96,7 +96,10 @@ class Machine:
         mark = f"<<{time.monotonic_ns()}>>"
         self.said = b""
         self.shell.settimeout(1)
-        self.shell.sendall((command.replace("\n", ";") + f" #{mark}\n").encode())
+        try:
+            self.shell.sendall((command.replace("\n", ";") + f" #{mark}\n").encode())
+        except TimeoutError:
+            raise Gone("the guest's port is full of commands that nobody has read") from None
         end = time.time() + limit
         while time.time() < end:
             if self.process.poll() is not None:
