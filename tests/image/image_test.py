@@ -24,6 +24,34 @@ def verify(image, tree, root_hash):
     return subprocess.run(["veritysetup", "verify", str(image), str(image), root_hash, f"--hash-offset={tree}"], capture_output=True, text=True)
 
 
+HEADLESS = """[Service]
+ExecStart=
+ExecStart=/usr/bin/prismesh-kiosk --runtime-dir /run/prismesh --size 640x480 --headless-frames 100000 --pace 0.2 --shots /var/lib/prismesh-kiosk
+WatchdogSec=60
+"""
+PROBE = """[Unit]
+After=prismesh.target
+[Service]
+ExecStart=/bin/sh -c "/bin/bash /mnt/health.sh >/mnt/said 2>&1; systemctl poweroff"
+"""
+
+
+def health(root, folder):
+    """Starts the root in a container, with a kiosk that draws without a screen, and tries the health check on planted illnesses."""
+    units = root / "etc/systemd/system"
+    (units / "prismesh-kiosk.service.d").mkdir()
+    (units / "prismesh-kiosk.service.d/headless.conf").write_text(HEADLESS)
+    (units / "probe.service").write_text(PROBE)
+    (units / "multi-user.target.wants/probe.service").symlink_to("../probe.service")
+    folder.mkdir()
+    shutil.copy(pathlib.Path(__file__).parent / "health.sh", folder)
+    subprocess.run(["timeout", "-k", "5", "300", "systemd-nspawn", "-q", "-D", root, "--volatile=overlay", "--register=no", "--keep-unit", "--private-network",
+                    "--console=pipe", f"--bind={folder}:/mnt", "-b", "systemd.show_status=0"], stdin=subprocess.DEVNULL, capture_output=True)
+    said = (folder / "said").read_text() if (folder / "said").exists() else ""
+    print(said, end="")
+    check("the health check was tried in a container", len(re.findall("^ok: ", said, re.M)) == 6 and "FAILED" not in said)
+
+
 def main():
     image = pathlib.Path(sys.argv[1]).absolute()
     packages = pathlib.Path(sys.argv[2]).absolute()
@@ -41,6 +69,7 @@ def main():
         for name in ("root.img", "prismesh.unsigned.efi"):
             same = subprocess.run(["cmp", sealed / name, again / "sealed" / name], capture_output=True, text=True)
             check(f"built again from the same packages, {name} has the same bytes", same.returncode == 0, same.stdout)
+        health(again / "root", again / "mnt")
     check("the root fits its hash", verify(sealed / "root.img", tree, root_hash).returncode == 0)
     with tempfile.TemporaryDirectory(dir=image) as folder:
         broken = pathlib.Path(folder) / "root.img"
