@@ -22,7 +22,7 @@ from run import HERE, PATIENCE, SIZE, Picture, Proof, partition, prepare
 SCRIPTS = HERE.parents[1] / "scripts/image"
 ARGUMENTS = "console=tty0 console=ttyS0 mitigations=off"
 HEALTH = "patience=120\nlate_percent=90\n"  # the emulation is late; that the figure is read is tested, not its size
-CUTS = 2
+CUTS = 1
 
 
 def run(*command, **options):
@@ -177,26 +177,23 @@ def updates(proof, versions, out):
         for cut in range(CUTS):
             # The plug is pulled while the other slot is being written; each time a little later.
             guest.run("mkdir -p /run/updates; mountpoint -q /run/updates || mount -o ro /dev/disk/by-label/updates /run/updates")
-            guest.run("(prismesh-update install /run/updates/1.1.raucb >/run/install.log 2>&1; echo $? >/run/install.rc) & true")
-            time.sleep(4 + 9 * cut)
-            done = guest.run("cat /run/install.rc", check=False)[0] == 0
+            guest.run("(prismesh-update install /run/updates/1.1.raucb >/run/install.log 2>&1) & true")
+            guest.wait_until("grep -q 'Copying image to rootfs' /run/install.log", 300)
+            time.sleep(1 + 5 * cut)
+            log = guest.run("tail -n 3 /run/install.log")
             guest.kill()
             station.start()
             guest = station.ready()
             said = station.status()
-            expected = "version 1.1 runs" if done else "version 1.0 runs from slot A"
-            proof.check(f"a power cut {4 + 9 * cut} s into an update leaves what ran" + (" (it was done already)" if done else ""), expected in said, said)
-            if done:
-                break
+            proof.check("a power cut while the other slot is written leaves what ran", "version 1.0 runs from slot A" in said and "slot B" not in said, said + log)
 
-        if "version 1.0 runs" in station.status():
-            began = time.time()
-            status, said = station.install("1.1")
-            proof.check(f"a good update is taken, in {time.time() - began:.0f} s", status == 0, said)
-            proof.check("it is on trial", "slot B: version 1.1, trial" in station.status(), station.status())
-            station.restart()
-            station.start()
-            guest = station.ready()
+        began = time.time()
+        status, said = station.install("1.1")
+        proof.check(f"a good update is taken, in {time.time() - began:.0f} s", status == 0, said)
+        proof.check("it is on trial", "slot B: version 1.1, trial" in station.status(), station.status())
+        station.restart()
+        station.start()
+        guest = station.ready()
         proof.check("the new version runs from the other slot", "version 1.1 runs from slot B" in station.status(), station.status())
         guest.wait_until("! systemctl is-active --quiet prismesh-update-confirm && systemctl show -P Result prismesh-update-confirm && prismesh-update status | grep -q 'slot B: version 1.1, confirmed'", 1500)
         proof.check("it was confirmed by its health check", True)
