@@ -35,7 +35,7 @@ TEST(Packages, have_a_section_for_each_purpose) {
   std::vector<std::string> names;
   for (const auto& [name, packages] : read_packages()) names.push_back(name);
   EXPECT_THAT(names, testing::UnorderedElementsAre("[run]", "[build]", "[test]", "[judge]", "[package]", "[package-test]", "[image]",
-                                                   "[roots]", "[disks]", "[vm]"));
+                                                   "[image-and-disks]", "[roots]", "[disks]", "[vm]"));
 }
 
 TEST(Packages, are_named_as_debian_names_them_and_stand_once) {

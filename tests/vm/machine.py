@@ -16,7 +16,7 @@ class Gone(Exception):
 
 
 class Machine:
-    def __init__(self, folder, disk, boot=(), size=(1280, 720), snapshot=True, devices=(None, None), memory_mb=2048, log=None):
+    def __init__(self, folder, disk, boot=(), size=(1280, 720), snapshot=True, devices=(None, None), memory_mb=2048, processors=2, log=None):
         """boot: further QEMU arguments, for example a kernel. devices: for the two adapters, the path of a pseudo-terminal or None."""
         self.folder = str(folder)
         os.makedirs(self.folder, exist_ok=True)
@@ -28,7 +28,7 @@ class Machine:
             if os.path.exists(self.path(name)):
                 os.unlink(self.path(name))
         # QEMU 7.2 reads through masked-off lanes of AVX2's gather, which ends software drawing with a fault.
-        arguments = ["qemu-system-x86_64", "-machine", "q35", "-accel", "tcg,thread=multi", "-cpu", "max,avx2=off,avx=off", "-smp", "2", "-m", str(memory_mb),
+        arguments = ["qemu-system-x86_64", "-machine", "q35", "-accel", "tcg,thread=multi", "-cpu", "max,avx2=off,avx=off", "-smp", str(processors), "-m", str(memory_mb),
                      "-nodefaults", "-no-reboot", "-display", "none", *boot,
                      "-drive", f"file={disk},format=raw,if=virtio,cache=writethrough" + (",snapshot=on" if snapshot else ""),
                      "-device", f"virtio-vga,xres={size[0]},yres={size[1]},edid=on",
@@ -96,7 +96,10 @@ class Machine:
         mark = f"<<{time.monotonic_ns()}>>"
         self.said = b""
         self.shell.settimeout(1)
-        self.shell.sendall((command.replace("\n", ";") + f" #{mark}\n").encode())
+        try:
+            self.shell.sendall((command.replace("\n", ";") + f" #{mark}\n").encode())
+        except TimeoutError:
+            raise Gone("the guest's port is full of commands that nobody has read") from None
         end = time.time() + limit
         while time.time() < end:
             if self.process.poll() is not None:

@@ -2,7 +2,7 @@
 """Boots the station's image in an emulated machine and works with it: what the monitor shows, the hands, a pulled plug. `./station vm` runs it.
 
 Each line that it prints is "ok: .." or "FAILED: ..". What can't run has failed. The image that is tested is a copy with three things added
-(`prepare`): a root shell on a port of its own, the devices' ports in the settings, and more patience of systemd, because the emulation is
+on its data partition (`prepare`): a root shell on a port of its own, the devices' ports in the settings, and more patience of systemd, because the emulation is
 some thirty times slower than a workstation."""
 import argparse
 import base64
@@ -80,38 +80,39 @@ class Proof:
         return holds
 
 
-def root_offset(disk):
+def partition(disk, name):
+    """Where a partition of a disk begins, and its length, in bytes."""
     table = json.loads(subprocess.run(["sfdisk", "-J", disk], check=True, capture_output=True).stdout)["partitiontable"]
-    return next(part["start"] for part in table["partitions"] if part.get("name") == "prismesh") * table.get("sectorsize", 512)
+    part = next(part for part in table["partitions"] if part.get("name") == name)
+    sector = table.get("sectorsize", 512)
+    return part["start"] * sector, part["size"] * sector
 
 
-def prepare(image, disk, files, remove=()):
-    """Copies the image and changes files of its root, without mounting it. files: by path, their text."""
+def prepare(image, disk, files):
+    """Copies the image and gives it a data partition with these files, by path below /etc and /var: their text, or "-> " and a link's target.
+    The root can't be changed: a station's own settings come in the same way. Needs root, whose files they are."""
     subprocess.run(["cp", "--sparse=always", image, disk], check=True)
-    folder = pathlib.Path(disk).parent / "added"
+    folder = pathlib.Path(disk).parent / "data"
     shutil.rmtree(folder, ignore_errors=True)
-    folder.mkdir()
-    commands, made = [], set()
-    for number, (path, text) in enumerate(files.items()):
-        for parent in reversed(pathlib.PurePosixPath(path).parents):
-            if str(parent) not in ("/", "/etc", "/opt") and str(parent) not in made:
-                commands.append(f"mkdir {parent}")
-                made.add(str(parent))
+    for name in ("etc", "etc.work", "var"):
+        (folder / name).mkdir(parents=True)
+    (folder / "format").write_text("1\n")
+    for path, text in files.items():
+        at = folder / path.lstrip("/")
+        at.parent.mkdir(parents=True, exist_ok=True)
         if text.startswith("-> "):
-            commands.append(f"symlink {path} {text[3:]}")
-            continue
-        (folder / str(number)).write_text(text)
-        commands += [f"rm {path}", f"write {folder / str(number)} {path}"]
-    commands += [f"rm {path}" for path in remove]
-    said = subprocess.run(["debugfs", "-w", "-f", "-", f"{disk}?offset={root_offset(disk)}"], input="\n".join(commands) + "\n", text=True,
-                          capture_output=True, check=True)
-    (folder / "log").write_text(said.stdout + said.stderr)
+            at.symlink_to(text[3:])
+        else:
+            at.write_text(text)
+    start, size = partition(disk, "prismesh-data")
+    subprocess.run(["mke2fs", "-q", "-F", "-t", "ext4", "-b", "4096", "-L", "prismesh-data", "-d", str(folder), "-E", f"offset={start},nodiscard", str(disk),
+                    str(size // 4096)], check=True)
 
 
 def machine(out, disk, name, devices=(None, None), snapshot=False):
     variables = out / "OVMF_VARS.fd"
-    shutil.copy("/usr/share/OVMF/OVMF_VARS.fd", variables)
-    firmware = ["-drive", "if=pflash,format=raw,readonly=on,file=/usr/share/OVMF/OVMF_CODE.fd", "-drive",
+    shutil.copy("/usr/share/OVMF/OVMF_VARS_4M.fd", variables)
+    firmware = ["-drive", "if=pflash,format=raw,readonly=on,file=/usr/share/OVMF/OVMF_CODE_4M.fd", "-drive",
                 f"if=pflash,format=raw,file={variables}"]
     console = open(out / f"{name}.console", "w")
     return Machine(out, disk, boot=firmware, size=SIZE, devices=devices, snapshot=snapshot,
@@ -167,8 +168,7 @@ def fetch(guest, path):
 def boots(proof, out, image, agent):
     """The image without our programs: what a boot costs anyway."""
     disk = str(out / "bare.img")
-    wants = "/etc/systemd/system/multi-user.target.wants"
-    prepare(image, disk, agent, remove=[f"{wants}/prismesh.target", f"{wants}/seatd.service"])
+    prepare(image, disk, {**agent, "/etc/systemd/system/prismesh.target": "-> /dev/null", "/etc/systemd/system/seatd.service": "-> /dev/null"})
     guest = machine(out, disk, "bare", snapshot=True)
     try:
         guest.wait_for_shell()
@@ -249,7 +249,7 @@ def at_rest(proof, guest):
     first = int(guest.run(sectors))
     time.sleep(120)
     written = int(guest.run(sectors)) - first
-    changed = guest.run("find / -xdev -newer /run/rest -type f; journalctl -b --no-pager -o short-monotonic | tail -12") if written else ""
+    changed = guest.run("find /data -xdev -newer /run/rest -type f; journalctl -b --no-pager -o short-monotonic | tail -12") if written else ""
     proof.check("nothing is written to the disk in two minutes of rest", written == 0, f"{written} sectors; changed files and the last log lines:\n{changed}")
 
 
@@ -262,7 +262,7 @@ def main():
     out = pathlib.Path(arguments.out).absolute()
     out.mkdir(parents=True, exist_ok=True)
     proof = Proof()
-    agent = {"/opt/agent.sh": (HERE / "agent.sh").read_text(), "/etc/systemd/system/agent.service": (HERE / "agent.service").read_text(),
+    agent = {"/var/lib/test/agent.sh": (HERE / "agent.sh").read_text(), "/etc/systemd/system/agent.service": (HERE / "agent.service").read_text(),
              "/etc/systemd/system/multi-user.target.wants/agent.service": "-> ../agent.service"}
     patience = {f"/etc/systemd/system/prismesh-{name}.service.d/patience.conf": PATIENCE for name in ("modeld", "deviced", "kiosk")}
     devices = subprocess.Popen([f"{arguments.programs}/vm_devices"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
