@@ -24,6 +24,8 @@ class FieldMaker {
   };
   /// Errors: of the field and of the other deck; the state is no longer in the history; cancelled.
   Result<MadeField> make(const mesh::document::Document& document, const ipc::GetField& request, const Progress& progress);
+  /// Lets go of the deck of the last comparison.
+  void forget() { other_.reset(); }
 
  private:
   struct ComparedModel {

@@ -225,6 +225,7 @@ Outcome RequestHandler::close(const ipc::Close& request) {
   if (const Result<void> done = keeper_.close(request.discard, request.keep); !done) return failed_by_edits(done.error(), blocked);
   publisher_.forget();
   contact_ = {};
+  fields_.forget();
   ::malloc_trim(0);  // a large model leaves hundreds of megabytes on the heap, which nobody else could use
   Outcome outcome;
   outcome.events.emplace_back(ipc::DocumentClosed{});

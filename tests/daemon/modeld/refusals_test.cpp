@@ -365,6 +365,28 @@ TEST_F(BenchRefusals, refuses_requests_without_an_answer_with_a_sentence) {
   EXPECT_NE(std::get<ipc::FieldMade>(one).field, std::get<ipc::FieldMade>(other).field);
 }
 
+TEST_F(BenchRefusals, a_closed_document_is_held_by_nobody) {
+  const fs::path second = folder_.sheet("second.k"), other = folder_.sheet("other.k");
+  std::weak_ptr<const mesh::deck::Deck> deck;
+  std::weak_ptr<const mesh::document::Generation> generation;
+  {
+    ASSERT_EQ(words(handler_.close({}).answer), "done");
+    const Outcome opened = handler_.open(open_request(second), {});
+    ASSERT_TRUE(opened.published);
+    deck = opened.published->document->deck;
+    generation = opened.published->document->opened;
+    ASSERT_EQ(words(handler_.edit(json_edit(kRaise)).answer), "done");
+    ipc::GetField field;
+    field.against = other.string();
+    ASSERT_EQ(words(handler_.field(field, [](double) { return true; }).answer), "done");
+    ASSERT_EQ(words(handler_.save({}).answer), "done");
+  }
+  EXPECT_FALSE(deck.expired());
+  ASSERT_EQ(words(handler_.close({}).answer), "done");
+  EXPECT_TRUE(generation.expired());
+  EXPECT_TRUE(deck.expired());
+}
+
 TEST_F(BenchRefusals, an_edit_counts_though_views_cannot_be_given_it) {
 #ifdef PRISMESH_ADDRESS_SANITIZER
   GTEST_SKIP() << "UndefinedBehaviorSanitizer needs descriptors of its own to look at an object's type";
