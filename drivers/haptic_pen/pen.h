@@ -50,6 +50,7 @@ struct PenReading {
 struct PenCommand {
   Eigen::Vector3d newton = Eigen::Vector3d::Zero();
   std::int64_t valid_until_ns = 0;
+  Eigen::Vector3d newton_metre = Eigen::Vector3d::Zero();  ///< a torque; devices of three degrees out ignore it
 };
 
 /// What the device can do; its maker's figures, or measured.
@@ -63,6 +64,9 @@ struct PenLimits {
   std::int64_t delay_ns = 0;  ///< from the measured position to the force that answers it, without the period
   Eigen::Vector3d workspace_min_mm = Eigen::Vector3d::Zero();
   Eigen::Vector3d workspace_max_mm = Eigen::Vector3d::Zero();
+  int degrees_in = 3;           ///< 3: the place; 6: the orientation too, where a grip that measures it is there
+  int degrees_out = 3;          ///< 3: a force; 6: a torque too
+  double max_newton_metre = 0;  ///< length of the torque
 };
 
 class HapticPen {

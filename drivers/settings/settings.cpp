@@ -14,6 +14,7 @@
 
 #include "base/file.h"
 #include "base/nearest_name.h"
+#include "drivers/haptic_pen/device_limits.h"
 
 namespace prismesh::drivers::settings {
 
@@ -45,10 +46,12 @@ struct SourceLine {
   long line = 0;
 };
 
-/// Where each device's driver and port were last set, for errors about missing or conflicting ports.
+/// Where values were last set that don't fit by themselves, for errors about missing or conflicting ports and forces.
 struct DeviceLines {
-  SourceLine tracker_driver, tracker_port, servo_driver, servo_port;
+  SourceLine tracker_driver, tracker_port, servo_driver, servo_port, pen_max_newton;
 };
+
+constexpr std::array<std::string_view, 4> kPenDrivers{"none", "simulated", "falcon", "inverse3"};
 
 std::string number_text(double value) {
   std::array<char, 32> text{};
@@ -280,17 +283,19 @@ Section servo_section(PrismServoSettings& servo, DeviceLines& places, const std:
        number("speed_mm_s", servo.speed_mm_s, 0.01, 1000, " mm/s"), number("lag_ms", servo.lag_ms, 0, 200, " ms")}};
 }
 
-Section pen_section(HapticPenSettings& pen, const fs::path& folder) {
-  return {"haptic_pen",
-          {choice("driver", {"none", "simulated", "falcon"}, [&pen](std::size_t i) { pen.driver = PenDriver(i); }),
-           device_file("port", pen.port), file_beside("hand_script", pen.hand_script, folder),
-           number("max_newton", pen.max_newton, 0.1, 8, " N"), number("stiffness_newton_m", pen.stiffness_newton_m, 0, 5000, " N/m"),
-           number("friction", pen.friction, 0, 1, ""), number("damping_newton_s_m", pen.damping_newton_s_m, 0, 5, " N s/m"),
-           file_beside("firmware", pen.firmware, folder), number("force_scale", pen.force_scale, 0.2, 5, ""),
-           number("own_damping_newton_s_m", pen.own_damping_newton_s_m, 0, 10, " N s/m"),
-           number("own_friction_newton", pen.own_friction_newton, 0, 2, " N"),
-           number("workspace_scale", pen.workspace_scale, 0.0001, 10000, " mm per length unit"),
-           choice("hand", {"right", "left"}, [&pen](std::size_t i) { pen.left_handed = i == 1; })}};
+Section pen_section(HapticPenSettings& pen, DeviceLines& places, const std::string& file, const fs::path& folder) {
+  return {
+      "haptic_pen",
+      {choice("driver", {kPenDrivers.begin(), kPenDrivers.end()}, [&pen](std::size_t i) { pen.driver = PenDriver(i); }),
+       device_file("port", pen.port), whole("service_port", pen.service_port, 1, 65535),
+       file_beside("hand_script", pen.hand_script, folder),
+       remember(number("max_newton", pen.max_newton, 0.1, 8, " N"), places.pen_max_newton, file),
+       number("stiffness_newton_m", pen.stiffness_newton_m, 0, 5000, " N/m"), number("friction", pen.friction, 0, 1, ""),
+       number("damping_newton_s_m", pen.damping_newton_s_m, 0, 5, " N s/m"), file_beside("firmware", pen.firmware, folder),
+       number("force_scale", pen.force_scale, 0.2, 5, ""), number("own_damping_newton_s_m", pen.own_damping_newton_s_m, 0, 10, " N s/m"),
+       number("own_friction_newton", pen.own_friction_newton, 0, 2, " N"),
+       number("workspace_scale", pen.workspace_scale, 0.0001, 10000, " mm per length unit"),
+       choice("hand", {"right", "left"}, [&pen](std::size_t i) { pen.left_handed = i == 1; })}};
 }
 
 Section remote_section(RemoteSettings& remote) {
@@ -339,7 +344,7 @@ class Reader {
                  whole("hang_s", settings_.document.hang_s, 0, 86'400, " s")}},
         tracker_section(settings_.eye_tracker, places_, file_),
         servo_section(settings_.prism_servo, places_, file_),
-        pen_section(settings_.haptic_pen, folder_),
+        pen_section(settings_.haptic_pen, places_, file_, folder_),
         remote_section(settings_.remote),
         exhibition_section(settings_.exhibition, folder_)};
     std::vector<std::string_view> names;
@@ -398,6 +403,18 @@ tl::unexpected<Error> missing_port(const SourceLine& driver, const std::string& 
               device + " has a driver but no port; say port = \"/dev/serial/by-id/..\" (ls that folder), or simulated = true");
 }
 
+/// Keeps the pen's force to what its device holds. A force that was written may not be longer; the default is shortened.
+Result<void> fit_to_device(HapticPenSettings& pen, const SourceLine& written) {
+  const haptic_pen::DeviceFigures* device = haptic_pen::figures_of(kPenDrivers[static_cast<std::size_t>(pen.driver)]);
+  if (device == nullptr || pen.max_newton <= device->max_newton) return {};
+  if (written.line != 0)
+    return fail(written.file, written.line,
+                "haptic_pen.max_newton is " + number_text(pen.max_newton) + "; a " + std::string(device->device) + " holds at most " +
+                    number_text(device->max_newton) + " N");
+  pen.max_newton = device->max_newton;
+  return {};
+}
+
 /// Checks conditions that involve several values.
 Result<StationSettings> checked(StationSettings settings, const DeviceLines& places) {
   const EyeTrackerSettings& tracker = settings.eye_tracker;
@@ -409,6 +426,7 @@ Result<StationSettings> checked(StationSettings settings, const DeviceLines& pla
   if (tracker_has_line && servo_has_line && tracker.port == servo.port)
     return fail(places.servo_port.file, places.servo_port.line,
                 "prism_servo.port is eye_tracker's as well (" + servo.port + "); each has a line of its own");
+  if (auto fits = fit_to_device(settings.haptic_pen, places.pen_max_newton); !fits) return fail(std::move(fits.error()));
   return settings;
 }
 

@@ -19,7 +19,7 @@ namespace prismesh::drivers::settings {
 enum class TrackerDriver : std::uint8_t { none, dynasight, opentrack };
 enum class TrackerDialect : std::uint8_t { dynasight, d4d };  ///< the command that starts streaming: `V` or `0`
 enum class ServoDriver : std::uint8_t { none, dynamixel };
-enum class PenDriver : std::uint8_t { none, simulated, falcon };
+enum class PenDriver : std::uint8_t { none, simulated, falcon, inverse3 };
 
 struct EyeTrackerSettings {
   TrackerDriver driver = TrackerDriver::none;
@@ -56,11 +56,12 @@ struct PrismServoSettings {
 struct HapticPenSettings {
   PenDriver driver = PenDriver::none;
   std::string port;                 ///< a pseudo-terminal of a program that simulates a pen; empty: the daemon simulates it
-  double max_newton = 8;            ///< the device's own limit holds if that is less
+  double max_newton = 8;            ///< at most what the device holds, which is also the default for it
   double stiffness_newton_m = 600;  ///< of contact; the loop lowers it to what the device allows
   double friction = 0.2;            ///< Coulomb's coefficient on shells
   double damping_newton_s_m = 0.3;
   std::string firmware;                 ///< of a Falcon: its file
+  std::uint16_t service_port = 10001;   ///< of an Inverse3: where its service listens on this machine
   double force_scale = 1;               ///< true newtons of the device for one that was asked for, from weighing
   double own_damping_newton_s_m = 0.5;  ///< of the device itself; with its friction it bounds the stiffness
   double own_friction_newton = 0.1;

@@ -40,7 +40,7 @@ const std::vector<Module>& modules() {
       {"mesh/document", {"base/json", "mesh/contact", "mesh/deck", "mesh/repair", "mesh/select", "mesh/shape"}},
       {"mesh/report", {"mesh/document"}},
 
-      {"drivers/settings", {"base"}},
+      {"drivers/settings", {"drivers/haptic_pen"}},
       {"drivers/port", {"base"}},
       {"drivers/display", {"base"}},
       {"drivers/eye_tracker", {"drivers/port"}},
@@ -52,6 +52,7 @@ const std::vector<Module>& modules() {
       {"drivers/haptic_pen", {"base"}},
       {"drivers/haptic_pen/framed", {"drivers/haptic_pen", "drivers/port"}},
       {"drivers/haptic_pen/falcon", {"drivers/haptic_pen", "drivers/port"}},
+      {"drivers/haptic_pen/inverse3", {"base/json", "drivers/haptic_pen", "drivers/port"}},
       {"drivers/haptics", {"drivers/haptic_pen"}},
       {"drivers/space_mouse", {"drivers/port"}},
 
@@ -77,7 +78,7 @@ const std::vector<Module>& modules() {
       {"daemon/deviced/realtime", {"base"}},
       {"daemon/deviced/pen",
        {"ipc/pen", "daemon/common", "daemon/deviced/realtime", "drivers/haptic_pen/falcon", "drivers/haptic_pen/framed",
-        "drivers/settings"}},
+        "drivers/haptic_pen/inverse3", "drivers/settings"}},
       {"daemon/deviced",
        {"ipc/device", "daemon/common", "daemon/deviced/pen", "drivers/eye_tracker/configured", "drivers/prism_servo/dynamixel"}},
 

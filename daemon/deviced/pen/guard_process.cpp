@@ -111,7 +111,7 @@ class Guard {
     const cmsghdr* header = CMSG_FIRSTHDR(&message);
     if (header == nullptr || header->cmsg_type != SCM_RIGHTS) return true;
     std::memcpy(&line_, CMSG_DATA(header), sizeof line_);
-    usb_ = told;
+    told_ = told;
     page_.holds_line = 1;
     changed_ns_ = now_ns();
     return true;
@@ -147,6 +147,7 @@ class Guard {
 
   void keep_at_zero(std::int64_t now) {
     if (orphan_since_ns_ == 0) orphan_since_ns_ = now;
+    if (told_.word == GuardWord::stream && now - orphan_since_ns_ > 10 * kKeepNs) return end_stream();
     if (now - orphan_since_ns_ > 10 * kKeepNs && now - wrote_ns_ < kKeepNs) return;
     write_zero();
   }
@@ -154,7 +155,8 @@ class Guard {
   void write_zero() {
     if (line_ < 0) return;
     wrote_ns_ = now_ns();
-    if (usb_.word == GuardWord::usb) return write_usb_zero();
+    if (told_.word == GuardWord::usb) return write_usb_zero();
+    if (told_.word == GuardWord::stream) return write_stream_zero();
     ForceFrame zero;
     zero.number = ++number_;
     zero.valid_ms = 1000;
@@ -167,13 +169,27 @@ class Guard {
 
   void write_usb_zero() {
     usbdevfs_bulktransfer bulk{};
-    bulk.ep = usb_.endpoint;
-    bulk.len = usb_.zero_bytes;
+    bulk.ep = told_.endpoint;
+    bulk.len = told_.zero_bytes;
     bulk.timeout = kUsbPatienceMs;
-    bulk.data = usb_.zero.data();
+    bulk.data = told_.zero.data();
     const int put = ::ioctl(line_, USBDEVFS_BULK, &bulk);
     if (put == static_cast<int>(bulk.len)) page_.zeros.fetch_add(1);
     if (put < 0 && errno != ETIMEDOUT && errno != EINTR) drop_line();
+  }
+
+  void write_stream_zero() {
+    const ssize_t put = ::send(line_, told_.zero.data(), told_.zero_bytes, MSG_DONTWAIT | MSG_NOSIGNAL);
+    if (put == told_.zero_bytes) page_.zeros.fetch_add(1);
+    // After a part of it nothing more would be understood.
+    else if (put >= 0 || (errno != EAGAIN && errno != EINTR))
+      end_stream();
+  }
+
+  /// The service sees that its client has gone. Nobody reads its answers any more, and the next process connects anew.
+  void end_stream() {
+    ::shutdown(line_, SHUT_RDWR);
+    drop_line();
   }
 
   void drop_line() {
@@ -194,7 +210,7 @@ class Guard {
   std::uint64_t beats_ = 0;
   std::int64_t changed_ns_ = 0, orphan_since_ns_ = 0, wrote_ns_ = 0;
   std::uint8_t number_ = 0;
-  GuardMessage usb_;  ///< how the line was given
+  GuardMessage told_;  ///< how the line was given
 };
 
 }  // namespace

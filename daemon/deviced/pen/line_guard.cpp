@@ -120,6 +120,14 @@ Result<void> LineGuard::watch(const drivers::port::UsbPort& line, std::uint8_t e
   return {};
 }
 
+Result<void> LineGuard::watch(int connection, std::span<const std::byte> zero) {
+  GuardMessage told{.word = GuardWord::stream, .endpoint = 0, .zero_bytes = static_cast<std::uint8_t>(zero.size()), .zero = {}};
+  if (connection < 0 || zero.size() > told.zero.size()) return fail("the pen's guard", "this connection can't be guarded");
+  std::copy(zero.begin(), zero.end(), told.zero.begin());
+  if (!say(socket_.get(), told, connection)) return failed("it can't be told");
+  return {};
+}
+
 void LineGuard::release() { say(socket_.get(), {.word = GuardWord::release}); }
 
 bool LineGuard::is_alive() {

@@ -28,6 +28,8 @@ class LineGuard {
   Result<void> watch(const drivers::port::BytePort& line);
   /// The same for a USB device, which is told `zero` at this endpoint.
   Result<void> watch(const drivers::port::UsbPort& line, std::uint8_t endpoint, std::span<const std::byte> zero);
+  /// The same for a connection to a service (a socket), which is told `zero`: at most kMaxZeroBytes.
+  Result<void> watch(int connection, std::span<const std::byte> zero);
   void release();
   /// False once the guard has ended: then nobody guards the line.
   bool is_alive();

@@ -23,7 +23,7 @@ class OpenPen {
 std::string pen_place(const drivers::settings::HapticPenSettings& settings);
 
 /// Opens it. All that is sent takes the line's token of `page`, which must outlive the pen. Errors: the line can't be opened, a Falcon's
-/// firmware file is bad; a sentence each.
+/// firmware file is bad, the Inverse3's service doesn't run or knows no device; a sentence each.
 Result<std::unique_ptr<OpenPen>> open_pen(const drivers::settings::HapticPenSettings& settings, const std::string& place, GuardPage& page);
 
 }  // namespace prismesh::deviced::pen

@@ -113,7 +113,7 @@ struct PenDaemon::Impl final : daemon::Service<PenProtocol> {
     info.state = name(state.stage);
     if (!has_pen()) return info;
     info.simulated = settings.driver == drivers::settings::PenDriver::simulated;
-    info.kind = info.simulated ? "simulated" : "falcon";
+    info.kind = info.simulated ? "simulated" : settings.driver == drivers::settings::PenDriver::inverse3 ? "inverse3" : "falcon";
     info.where = station->where();
     info.trouble = station->trouble();
     if (info.trouble.empty() && state.stage == ipc::PenStage::latched) info.trouble = fault_sentence(state.fault);

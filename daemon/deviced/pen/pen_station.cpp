@@ -21,7 +21,8 @@ using drivers::haptics::SafetyPhase;
 using drivers::haptics::SafetyRecord;
 
 constexpr std::int64_t kTryAgainNs = 250'000'000;
-/// Looking through all USB devices takes five milliseconds; plugs are seen at once.
+/// Looking through all USB devices takes five milliseconds, where plugs are seen at once; a service that hangs is given a third of a
+/// second.
 constexpr std::int64_t kLookAgainNs = 1'000'000'000;
 /// Far longer than what latches: the line is then opened anew.
 constexpr std::int64_t kMaxSilenceOfPenNs = 1'000'000'000;
@@ -52,7 +53,7 @@ Result<std::unique_ptr<PenStation>> PenStation::start(const drivers::settings::H
   station->feel_.damping_newton_s_m = settings.damping_newton_s_m;
   if (settings.driver == drivers::settings::PenDriver::falcon) {
     if (auto watch = drivers::port::watch_usb(drivers::haptic_pen::falcon::falcon_wanted())) station->plugs_ = std::move(*watch);
-  } else if (settings.port.empty()) {
+  } else if (settings.driver == drivers::settings::PenDriver::simulated && settings.port.empty()) {
     Result<drivers::port::PtyPair> terminal = drivers::port::open_pty_pair();
     if (!terminal) return fail(std::move(terminal.error()));
     station->port_ = terminal->slave_path;
@@ -99,7 +100,7 @@ void PenStation::poll() {
 }
 
 void PenStation::open_line() {
-  next_try_ns_ = clock_.now_ns() + (settings_.driver == drivers::settings::PenDriver::falcon ? kLookAgainNs : kTryAgainNs);
+  next_try_ns_ = clock_.now_ns() + (settings_.driver == drivers::settings::PenDriver::simulated ? kTryAgainNs : kLookAgainNs);
   Result<std::unique_ptr<OpenPen>> opened = open_pen(settings_, port_, guard_.page());
   if (!opened) {
     if (std::exchange(trouble_, opened.error().text()) != trouble_) logging::warn("{}", trouble_);

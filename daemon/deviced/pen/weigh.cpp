@@ -168,7 +168,7 @@ Result<void> weigh_pen(const WeighPenOptions& options) {
   if (!read) return fail(read.error());
   const drivers::settings::HapticPenSettings& settings = read->haptic_pen;
   if (settings.driver == drivers::settings::PenDriver::none ||
-      (settings.driver != drivers::settings::PenDriver::falcon && settings.port.empty()))
+      (settings.driver == drivers::settings::PenDriver::simulated && settings.port.empty()))
     return fail("--weigh", "no device is configured that could be weighed: set haptic_pen.driver in prismesh.toml");
   const WeighingOptions weight{options.grams, settings.max_newton, settings.force_scale};
   if (Result<void> fits = check(weight); !fits) return fits;

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "drivers/haptic_pen/device_limits.h"
 #include "drivers/haptic_pen/falcon/ftdi.h"
 
 namespace prismesh::drivers::haptic_pen::falcon {
@@ -20,10 +21,6 @@ constexpr std::int64_t kStuckNs = 10'000'000;
 constexpr std::int64_t kResyncNs = 25'000'000;
 /// From a pose to the force that answers it, without the period: the chip's latency of 1 ms and two frames of the bus.
 constexpr std::int64_t kDelayNs = 1'500'000;
-/// The smallest step of an encoder at the grip, in the middle of the workspace; its maker says 400 a inch.
-constexpr double kQuantumMm = 0.0635;
-/// CHAI3D's table for the Falcon: 8 N, 3,000 N/m, 40 mm to each side.
-constexpr double kMaxNewton = 8, kMaxStiffness = 3000, kReachMm = 40;
 
 std::string fault_words(BootFault fault) {
   switch (fault) {
@@ -52,17 +49,7 @@ port::UsbWanted falcon_wanted() {
 }
 
 PenLimits falcon_limits(const FalconOptions& options) {
-  PenLimits limits;
-  limits.max_newton = kMaxNewton;
-  limits.max_axis_newton.setConstant(kMaxNewton);
-  limits.max_stiffness_newton_m = kMaxStiffness;
-  limits.damping_newton_s_m = options.damping_newton_s_m;
-  limits.friction_newton = options.friction_newton;
-  limits.quantum_mm = kQuantumMm;
-  limits.delay_ns = kDelayNs;
-  limits.workspace_min_mm.setConstant(-kReachMm);
-  limits.workspace_max_mm.setConstant(kReachMm);
-  return limits;
+  return limits_of(kFalconFigures, options.damping_newton_s_m, options.friction_newton, kDelayNs);
 }
 
 PacketBytes zero_packet() { return encode(ForcePacket{}); }

@@ -46,7 +46,7 @@ std::string all_of(const StationSettings& settings) {
   const HapticPenSettings& p = settings.haptic_pen;
   text << '|' << int(p.driver) << p.port << '|' << p.max_newton << '|' << p.stiffness_newton_m << '|' << p.friction << '|'
        << p.damping_newton_s_m << '|' << p.workspace_scale << '|' << p.left_handed << '|' << p.hand_script << '|' << p.firmware << '|'
-       << p.force_scale << '|' << p.own_damping_newton_s_m << '|' << p.own_friction_newton;
+       << p.force_scale << '|' << p.own_damping_newton_s_m << '|' << p.own_friction_newton << '|' << p.service_port;
   const RemoteSettings& r = settings.remote;
   text << '|' << r.address << '|' << r.port << '|' << r.hosts.size() << '|' << r.quota_gb << '|' << r.file_gb << '|' << r.reserved_gb << '|'
        << r.upload_hours;
@@ -108,6 +108,7 @@ firmware = "falcon.bin"
 force_scale = 0.9
 own_damping_newton_s_m = 0.7
 own_friction_newton = 0.2
+service_port = 8500
 [remote]
 listen = "[::1]:7443"
 hosts = ["station.example", "Station"]
@@ -129,7 +130,7 @@ TEST(Settings, every_key_is_read) {
   EXPECT_EQ(all_of(parsed(kEveryKey)),
             "anaglyph|6.5|2DP-1|1920 1080 60|1|256|1|1|/dev/serial/by-id/usb-tracker|9600|0|1|4243|12.5|0.5|1 210.5 -15|61|lean|"
             "1|1|/dev/serial/by-id/usb-servo|57600|7|4|1|1000|1.5|6|20|middle-orbit|64|30|1/dev/pts/"
-            "9|6|500|0.1|0.4|2.5|1|push.hand|falcon.bin|0.9|0.7|0.2|::1|7443|2|20|4|1|48|/srv/show/"
+            "9|6|500|0.1|0.4|2.5|1|push.hand|falcon.bin|0.9|0.7|0.2|8500|::1|7443|2|20|4|1|48|/srv/show/"
             "sample.k|show.jsonl|40|5|$6$saltsalt$hash-as-crypt-writes-it");
 }
 
@@ -183,7 +184,7 @@ TEST(Settings, refuses_errors_with_line_and_remedy) {
       {"[document]\nhistory_mb = 1\n", "station.toml:2: document.history_mb is 1; it must be from 16 to 1048576 MB"},
       {"[document]\nhang_s = -1\n", "station.toml:2: document.hang_s is -1; it must be from 0 to 86400 s"},
       {"[haptic_pen]\ndriver = 'falcn'\n",
-       "station.toml:2: haptic_pen.driver has no \"falcn\"; the nearest is \"falcon\" of none, simulated, falcon"},
+       "station.toml:2: haptic_pen.driver has no \"falcn\"; the nearest is \"falcon\" of none, simulated, falcon, inverse3"},
       {"[haptic_pen]\nforce_scale = 0.1\n", "station.toml:2: haptic_pen.force_scale is 0.1;"},
       {"[haptic_pen]\nhand = 'both'\n", "station.toml:2: haptic_pen.hand has no \"both\""},
       {"[haptic_pen]\nhand_script = 7\n", "station.toml:2: haptic_pen.hand_script must be a file's name in quotes"},
@@ -193,6 +194,14 @@ TEST(Settings, refuses_errors_with_line_and_remedy) {
       {"[display]\nprofile = \"\xff\"\n", "station.toml:2: "},
   };
   for (const auto& [text, message] : cases) EXPECT_EQ(error_of(text).substr(0, std::string_view(message).size()), message) << text;
+}
+
+TEST(Settings, keep_the_pens_force_to_what_its_device_holds) {
+  EXPECT_EQ(parsed("[haptic_pen]\ndriver = 'falcon'").haptic_pen.max_newton, 8);
+  EXPECT_EQ(parsed("[haptic_pen]\ndriver = 'inverse3'").haptic_pen.max_newton, 4);
+  EXPECT_EQ(parsed("[haptic_pen]\nmax_newton = 4\ndriver = 'inverse3'").haptic_pen.max_newton, 4);
+  EXPECT_EQ(error_of("[haptic_pen]\nmax_newton = 4.5\ndriver = 'inverse3'"),
+            "station.toml:2: haptic_pen.max_newton is 4.5; a Haply Inverse3 holds at most 4 N");
 }
 
 TEST(Settings, choose_a_screen_and_its_mode) {
@@ -233,6 +242,7 @@ TEST(Settings, refuses_numbers_beyond_their_limits) {
                            {"prism_servo", "speed_mm_s", "0.009", "0.01", "1000", "1000.1"},
                            {"prism_servo", "lag_ms", "-0.1", "0", "200", "200.1"},
                            {"haptic_pen", "max_newton", "0.09", "0.1", "8", "8.1"},
+                           {"haptic_pen", "service_port", "0", "1", "65535", "65536"},
                            {"haptic_pen", "stiffness_newton_m", "-1", "0", "5000", "5001"},
                            {"haptic_pen", "friction", "-0.1", "0", "1", "1.1"},
                            {"haptic_pen", "damping_newton_s_m", "-0.1", "0", "5", "5.1"},
