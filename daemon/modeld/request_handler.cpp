@@ -1,7 +1,5 @@
 #include "daemon/modeld/request_handler.h"
 
-#include <malloc.h>
-
 #include <algorithm>
 #include <cmath>
 #include <span>
@@ -226,7 +224,6 @@ Outcome RequestHandler::close(const ipc::Close& request) {
   publisher_.forget();
   contact_ = {};
   fields_.forget();
-  ::malloc_trim(0);  // a large model leaves hundreds of megabytes on the heap, which nobody else could use
   Outcome outcome;
   outcome.events.emplace_back(ipc::DocumentClosed{});
   outcome.published = PublishedState{};

@@ -1,5 +1,7 @@
 #include "daemon/modeld/request_scheduler.h"
 
+#include <malloc.h>
+
 #include <algorithm>
 #include <chrono>
 #include <exception>
@@ -342,6 +344,7 @@ void RequestScheduler::take_published(Outcome& outcome) {
   published_ = std::move(*outcome.published);
   outcome.published.reset();
   channel_.shown(published_);
+  if (!published_.document) ::malloc_trim(0);  // a large model leaves much on the heap, which nobody else could use
 }
 
 void RequestScheduler::tell(Outcome& outcome) {

@@ -394,6 +394,8 @@ void SnapshotPublisher::forget() {
   impl_->per_model = {};
   impl_->damage = {};
   impl_->clusters = {};
+  impl_->opened_judged.reset();
+  impl_->opened_judged_from.reset();
   impl_->shrink();
 }
 

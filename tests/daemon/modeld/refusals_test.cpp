@@ -375,6 +375,15 @@ TEST_F(BenchRefusals, a_closed_document_is_held_by_nobody) {
     ASSERT_TRUE(opened.published);
     deck = opened.published->document->deck;
     generation = opened.published->document->opened;
+  }
+  ASSERT_EQ(words(handler_.close({}).answer), "done");
+  EXPECT_TRUE(generation.expired());
+  EXPECT_TRUE(deck.expired());
+  {
+    const Outcome opened = handler_.open(open_request(second), {});
+    ASSERT_TRUE(opened.published);
+    deck = opened.published->document->deck;
+    generation = opened.published->document->opened;
     ASSERT_EQ(words(handler_.edit(json_edit(kRaise)).answer), "done");
     ipc::GetField field;
     field.against = other.string();
