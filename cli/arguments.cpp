@@ -173,6 +173,15 @@ void add_reading_commands(Parser& parser) {
   names_file(diff_app->add_option("A", diff_options->a, "a deck"))->required();
   names_file(diff_app->add_option("B", diff_options->b, "another deck"))->required();
 
+  const auto [report_app, report_options] =
+      add_command<ReportOptions>(parser, "report", "write what changed between two decks as a page that can be mailed", report);
+  names_file(report_app->add_option("A", report_options->a, "the deck before"))->required();
+  names_file(report_app->add_option("B", report_options->b, "the deck after"))->required();
+  names_file(report_app->add_option("-o,--output", report_options->output, "the page of HTML to write"))->required();
+  add_optional(report_app, "--journal", report_options->journal, "the journal or the script of the edits, which the page then lists");
+  report_app->add_option("--view", report_options->view, "of the pictures: front, back, left, right, top, bottom or iso (default)")
+      ->check(CLI::IsMember({"front", "back", "left", "right", "top", "bottom", "iso"}));
+
   const auto [distance_app, distance_options] =
       add_command<DistanceOptions>(parser, "distance", "measure the shortest distance between two sets of nodes or shells", distance);
   names_file(distance_app->add_option("DECK", distance_options->deck, "the deck's main file"))->required();

@@ -63,6 +63,15 @@ struct DiffOptions {
 };
 int diff(const DiffOptions& options, const Common& common, const Context& context);
 
+struct ReportOptions {
+  std::filesystem::path a;
+  std::filesystem::path b;
+  std::filesystem::path output;
+  std::optional<std::filesystem::path> journal;  ///< of the edits, or a script
+  std::string view = "iso";                      ///< of the pictures
+};
+int report(const ReportOptions& options, const Common& common, const Context& context);
+
 struct DistanceOptions {
   std::filesystem::path deck;
   std::string from;  ///< expressions

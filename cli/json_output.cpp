@@ -28,6 +28,12 @@ std::string check_json(const document::Document& document, const mesh::report::C
 
 std::string diff_json(const mesh::report::Difference& difference) { return mesh::report::diff_object(difference).dump(); }
 
+std::string report_json(const std::string& file, std::size_t bytes, const std::string& missing) {
+  return Json{
+      {"report", printable(file)}, {"bytes", bytes}, {"picture_missing", missing.empty() ? Json(nullptr) : Json(printable(missing))}}
+      .dump();
+}
+
 std::string edit_json(const document::EditReport& report) { return edit_object(report).dump(); }
 
 std::string failed_edit_json(const std::string& edit, const std::string& reason) {

@@ -28,6 +28,8 @@ namespace prismesh::cli {
 std::string info_json(const mesh::document::Document& document);
 std::string check_json(const mesh::document::Document& document, const mesh::report::CheckFigures& figures);
 std::string diff_json(const mesh::report::Difference& difference);
+/// Of `report`. `missing`: why a picture is missing; empty: none is.
+std::string report_json(const std::string& file, std::size_t bytes, const std::string& missing);
 std::string edit_json(const mesh::document::EditReport& report);
 std::string failed_edit_json(const std::string& edit, const std::string& reason);
 std::string replay_json(const std::vector<mesh::document::ReplayStep>& steps, const std::string& deck_hash, bool other_deck);
