@@ -326,6 +326,25 @@ void add_writing_commands(Parser& parser) {
   names_file(sample_app->add_option("-o,--output", sample_options->output, "the deck to write"))->required();
 }
 
+void add_batch(Parser& parser) {
+  const auto [app, options] = add_command<BatchOptions>(
+      parser, "batch",
+      "edit, repair and measure many variants of decks by a plan; without --local and --slurm, make the tables of what is there", batch);
+  names_file(app->add_option("PLAN", options->plan, "the plan (TOML), or a study that was frozen from it"))->required();
+  CLI::Option* local = app->add_flag("--local", options->local, "work what is missing on this machine");
+  CLI::Option* slurm = app->add_flag("--slurm", options->slurm, "submit what is missing to Slurm, as a job array")->excludes(local);
+  app->add_option_function<std::size_t>(
+         "--jobs", [o = options](std::size_t jobs) { o->jobs = jobs; }, "variants at the same time (default: one a processor)")
+      ->check(CLI::Range(1, 4096));
+  CLI::Option* variant = app->add_option_function<std::size_t>(
+      "--variant", [o = options](std::size_t number) { o->variant = number; }, "what workers are started with: work only this variant");
+  variant->excludes(local)->excludes(slurm);
+  CLI::Option* task = app->add_option_function<std::size_t>(
+      "--task", [o = options](std::size_t number) { o->task = number; }, "what tasks of Slurm are started with, from 0, with --tasks");
+  task->excludes(local)->excludes(slurm)->excludes(variant);
+  app->add_option("--tasks", options->tasks, "how many tasks share the variants")->needs(task)->check(CLI::Range(1, 1'000'000));
+}
+
 void add_bench(Parser& parser) {
   const auto [app, options] = add_command<BenchOptions>(parser, "bench", "measure how long the core's work takes on this machine", bench);
   add_optional(app, "DECK", options->deck, "the deck's main file (default: the generated sample)");
@@ -527,6 +546,7 @@ Result<Action> parse_arguments(std::span<const std::string> args) {
   add_welds(*parser);
   add_measuring(*parser);
   add_writing_commands(*parser);
+  add_batch(*parser);
   add_bench(*parser);
   add_render(*parser);
   add_session(*parser);

@@ -119,6 +119,16 @@ struct FlangesOptions {
 };
 int flanges(const FlangesOptions& options, const Common& common, const Context& context);
 
+struct BatchOptions {
+  std::filesystem::path plan;  ///< or a frozen study, which the workers get
+  bool local = false, slurm = false;
+  std::optional<std::size_t> jobs;     ///< workers at the same time
+  std::optional<std::size_t> variant;  ///< a worker's, from 1
+  std::optional<std::size_t> task;     ///< of Slurm's array
+  std::size_t tasks = 1;
+};
+int batch(const BatchOptions& options, const Common& common, const Context& context);
+
 struct SampleOptions {
   std::optional<std::size_t> elements;
   std::filesystem::path output;

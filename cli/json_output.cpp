@@ -34,6 +34,18 @@ std::string report_json(const std::string& file, std::size_t bytes, const std::s
       .dump();
 }
 
+std::string batch_json(const mesh::batch::Table& table, const std::string& page) {
+  using mesh::batch::RowState;
+  return Json{
+      {"variants", table.rows.size()},           {"done", table.count(RowState::done)},       {"refused", table.count(RowState::refused)},
+      {"failed", table.count(RowState::failed)}, {"missing", table.count(RowState::missing)}, {"page", printable(page)}}
+      .dump();
+}
+
+std::string submitted_json(std::size_t variants, const std::string& job, const std::string& collector) {
+  return Json{{"submitted", variants}, {"job", job}, {"collector", collector.empty() ? Json(nullptr) : Json(collector)}}.dump();
+}
+
 std::string edit_json(const document::EditReport& report) { return edit_object(report).dump(); }
 
 std::string failed_edit_json(const std::string& edit, const std::string& reason) {

@@ -40,6 +40,7 @@ struct RenderOptions {
   tools::comparison::LegendFacts legend;
   int samples = 4;
   bool thickness = false;
+  bool has_legend = true;          ///< of a field
   bool legend_below = false;       ///< the model is drawn above the legend, not behind it
   std::optional<stereo::Box> box;  ///< fills the picture; empty: the whole model
 };
@@ -118,7 +119,8 @@ Result<void> read_thickness(const std::string& text, RenderOptions& options) {
 }
 
 Result<void> read_legend(const std::string& text, RenderOptions& options) {
-  if (text != "over" && text != "below") return wrong("--legend", text, "is over (the model) or below (it)");
+  if (text != "over" && text != "below" && text != "none") return wrong("--legend", text, "is over (the model), below (it) or none");
+  options.has_legend = text != "none";
   options.legend_below = text == "below";
   return {};
 }
@@ -300,7 +302,8 @@ Result<void> render_picture(const RenderOptions& options, const stereo::Profile&
     Result<panels::Gui> shown = show_field(options, **renderer, picture);
     if (!shown) return fail(shown.error());
     gui = std::move(*shown);
-    picture.overlay = [&](const render::EyeImage& image) { gui->draw({image.width, image.height}, image.from_picture); };
+    if (options.has_legend)
+      picture.overlay = [&](const render::EyeImage& image) { gui->draw({image.width, image.height}, image.from_picture); };
   }
   if (const std::string note = options.thickness ? toolkit::words_on_thickness((*snapshot)->info().parts) : std::string(); !note.empty())
     std::fprintf(stderr, "%s: note: %s\n", options.picture.c_str(), note.c_str());

@@ -101,28 +101,15 @@ void add_to(std::optional<Box>& box, const Vec3& point) {
   box->max = box->max.cwiseMax(point);
 }
 
-std::optional<Box> box_about_changes(const Model& b, const Difference& difference) {
-  std::optional<Box> box, whole;
-  const auto add_nodes = [&](const std::vector<std::int64_t>& ids) {
-    for (const std::int64_t id : ids) add_to(box, b.position(b.find_node(id)));
-  };
-  const auto add_shells = [&](const std::vector<std::int64_t>& ids) {
-    for (const std::int64_t id : ids)
-      for (const NodeIndex node : b.shell(b.find_shell(id)).node) add_to(box, b.position(node));
-  };
-  add_nodes(difference.moved);
-  add_nodes(difference.added);
-  add_shells(difference.shells_added);
-  add_shells(difference.shells_changed);
-  if (!box) return box;
-  for (std::size_t shell = 0; shell < b.shell_count(); ++shell)
-    if (!b.is_removed(ShellIndex(shell)))
-      for (const NodeIndex node : b.shell_nodes[shell].node) add_to(whole, b.position(node));
-  const double of_model = whole ? (whole->max - whole->min).norm() : 0;
-  const double size = std::max((box->max - box->min).norm() * (1 + kRoomAbout), of_model * kLeastOfModel);
-  const Vec3 middle = (box->min + box->max) / 2;
-  const Vec3 half = ((box->max - box->min) / 2).cwiseMax(Vec3::Constant(size / 4));
-  return Box{middle - half, middle + half};
+/// Where nodes and shells of the second state differ from those of the first.
+std::vector<Vec3> changed_places(const Model& b, const Difference& difference) {
+  std::vector<Vec3> places;
+  for (const std::vector<std::int64_t>* nodes : {&difference.moved, &difference.added})
+    for (const std::int64_t id : *nodes) places.push_back(b.position(b.find_node(id)));
+  for (const std::vector<std::int64_t>* shells : {&difference.shells_added, &difference.shells_changed})
+    for (const std::int64_t id : *shells)
+      for (const NodeIndex node : b.shell(b.find_shell(id)).node) places.push_back(b.position(node));
+  return places;
 }
 
 std::string criteria_words(const Document& document) {
@@ -160,6 +147,20 @@ deck::OpenedDeck as_opened(const Document& document) { return {document.deck, do
 
 }  // namespace
 
+std::optional<Box> picture_box(const Model& model, std::span<const Vec3> places) {
+  std::optional<Box> box, whole;
+  for (const Vec3& place : places) add_to(box, place);
+  if (!box) return box;
+  for (std::size_t shell = 0; shell < model.shell_count(); ++shell)
+    if (!model.is_removed(ShellIndex(shell)))
+      for (const NodeIndex node : model.shell_nodes[shell].node) add_to(whole, model.position(node));
+  const double of_model = whole ? (whole->max - whole->min).norm() : 0;
+  const double size = std::max((box->max - box->min).norm() * (1 + kRoomAbout), of_model * kLeastOfModel);
+  const Vec3 middle = (box->min + box->max) / 2;
+  const Vec3 half = ((box->max - box->min) / 2).cwiseMax(Vec3::Constant(size / 4));
+  return Box{middle - half, middle + half};
+}
+
 bool can_be_judged_alike(const deck::OpenedDeck& before, const deck::OpenedDeck& after) {
   const std::vector<Part>& a = *before.model.parts;
   const std::vector<Part>& b = *after.model.parts;
@@ -181,7 +182,7 @@ ChangeReport change_report(const Document& before, const Document& after) {
   report.limits = common_limits(before);
   report.parts = part_changes(before, report.before.check, after, report.after.check);
   add_failed(before.current(), after.current(), report);
-  report.changed = box_about_changes(b, report.difference);
+  report.changed = picture_box(b, changed_places(b, report.difference));
   return report;
 }
 

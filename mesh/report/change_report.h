@@ -3,7 +3,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -79,6 +81,10 @@ struct ChangeReport {
 };
 inline constexpr std::size_t kMovesListed = 20;
 inline constexpr std::size_t kFailedListed = 50;
+
+/// A box about some places, with room about them, that shows at least a part of the model large enough to be recognised; absent without
+/// places.
+std::optional<PartFigures::Box> picture_box(const Model& model, std::span<const Vec3> places);
 
 /// Whether the parts of both decks are the same, so that the second can be judged by the target sizes that were found for the first.
 bool can_be_judged_alike(const deck::OpenedDeck& before, const deck::OpenedDeck& after);
