@@ -173,6 +173,15 @@ void add_reading_commands(Parser& parser) {
   names_file(diff_app->add_option("A", diff_options->a, "a deck"))->required();
   names_file(diff_app->add_option("B", diff_options->b, "another deck"))->required();
 
+  const auto [report_app, report_options] =
+      add_command<ReportOptions>(parser, "report", "write what changed between two decks as a page that can be mailed", report);
+  names_file(report_app->add_option("A", report_options->a, "the deck before"))->required();
+  names_file(report_app->add_option("B", report_options->b, "the deck after"))->required();
+  names_file(report_app->add_option("-o,--output", report_options->output, "the page of HTML to write"))->required();
+  add_optional(report_app, "--journal", report_options->journal, "the journal or the script of the edits, which the page then lists");
+  report_app->add_option("--view", report_options->view, "of the pictures: front, back, left, right, top, bottom or iso (default)")
+      ->check(CLI::IsMember({"front", "back", "left", "right", "top", "bottom", "iso"}));
+
   const auto [distance_app, distance_options] =
       add_command<DistanceOptions>(parser, "distance", "measure the shortest distance between two sets of nodes or shells", distance);
   names_file(distance_app->add_option("DECK", distance_options->deck, "the deck's main file"))->required();
@@ -315,6 +324,25 @@ void add_writing_commands(Parser& parser) {
       add_command<SampleOptions>(parser, "sample", "write a generated sheet-metal assembly as an example deck", sample);
   add_elements(sample_app, sample_options->elements, "about how many shells", mesh::deck::kSampleShellsDefault);
   names_file(sample_app->add_option("-o,--output", sample_options->output, "the deck to write"))->required();
+}
+
+void add_batch(Parser& parser) {
+  const auto [app, options] = add_command<BatchOptions>(
+      parser, "batch",
+      "edit, repair and measure many variants of decks by a plan; without --local and --slurm, make the tables of what is there", batch);
+  names_file(app->add_option("PLAN", options->plan, "the plan (TOML), or a study that was frozen from it"))->required();
+  CLI::Option* local = app->add_flag("--local", options->local, "work what is missing on this machine");
+  CLI::Option* slurm = app->add_flag("--slurm", options->slurm, "submit what is missing to Slurm, as a job array")->excludes(local);
+  app->add_option_function<std::size_t>(
+         "--jobs", [o = options](std::size_t jobs) { o->jobs = jobs; }, "variants at the same time (default: one a processor)")
+      ->check(CLI::Range(1, 4096));
+  CLI::Option* variant = app->add_option_function<std::size_t>(
+      "--variant", [o = options](std::size_t number) { o->variant = number; }, "what workers are started with: work only this variant");
+  variant->excludes(local)->excludes(slurm);
+  CLI::Option* task = app->add_option_function<std::size_t>(
+      "--task", [o = options](std::size_t number) { o->task = number; }, "what tasks of Slurm are started with, from 0, with --tasks");
+  task->excludes(local)->excludes(slurm)->excludes(variant);
+  app->add_option("--tasks", options->tasks, "how many tasks share the variants")->needs(task)->check(CLI::Range(1, 1'000'000));
 }
 
 void add_bench(Parser& parser) {
@@ -518,6 +546,7 @@ Result<Action> parse_arguments(std::span<const std::string> args) {
   add_welds(*parser);
   add_measuring(*parser);
   add_writing_commands(*parser);
+  add_batch(*parser);
   add_bench(*parser);
   add_render(*parser);
   add_session(*parser);

@@ -63,6 +63,15 @@ struct DiffOptions {
 };
 int diff(const DiffOptions& options, const Common& common, const Context& context);
 
+struct ReportOptions {
+  std::filesystem::path a;
+  std::filesystem::path b;
+  std::filesystem::path output;
+  std::optional<std::filesystem::path> journal;  ///< of the edits, or a script
+  std::string view = "iso";                      ///< of the pictures
+};
+int report(const ReportOptions& options, const Common& common, const Context& context);
+
 struct DistanceOptions {
   std::filesystem::path deck;
   std::string from;  ///< expressions
@@ -109,6 +118,16 @@ struct FlangesOptions {
   std::optional<double> max_width;
 };
 int flanges(const FlangesOptions& options, const Common& common, const Context& context);
+
+struct BatchOptions {
+  std::filesystem::path plan;  ///< or a frozen study, which the workers get
+  bool local = false, slurm = false;
+  std::optional<std::size_t> jobs;     ///< workers at the same time
+  std::optional<std::size_t> variant;  ///< a worker's, from 1
+  std::optional<std::size_t> task;     ///< of Slurm's array
+  std::size_t tasks = 1;
+};
+int batch(const BatchOptions& options, const Common& common, const Context& context);
 
 struct SampleOptions {
   std::optional<std::size_t> elements;

@@ -28,6 +28,24 @@ std::string check_json(const document::Document& document, const mesh::report::C
 
 std::string diff_json(const mesh::report::Difference& difference) { return mesh::report::diff_object(difference).dump(); }
 
+std::string report_json(const std::string& file, std::size_t bytes, const std::string& missing) {
+  return Json{
+      {"report", printable(file)}, {"bytes", bytes}, {"picture_missing", missing.empty() ? Json(nullptr) : Json(printable(missing))}}
+      .dump();
+}
+
+std::string batch_json(const mesh::batch::Table& table, const std::string& page) {
+  using mesh::batch::RowState;
+  return Json{
+      {"variants", table.rows.size()},           {"done", table.count(RowState::done)},       {"refused", table.count(RowState::refused)},
+      {"failed", table.count(RowState::failed)}, {"missing", table.count(RowState::missing)}, {"page", printable(page)}}
+      .dump();
+}
+
+std::string submitted_json(std::size_t variants, const std::string& job, const std::string& collector) {
+  return Json{{"submitted", variants}, {"job", job}, {"collector", collector.empty() ? Json(nullptr) : Json(collector)}}.dump();
+}
+
 std::string edit_json(const document::EditReport& report) { return edit_object(report).dump(); }
 
 std::string failed_edit_json(const std::string& edit, const std::string& reason) {

@@ -11,6 +11,7 @@
 #include "cli/device_figures.h"
 #include "cli/figures.h"
 #include "cli/machine_checks.h"
+#include "mesh/batch/table.h"
 #include "mesh/connections/flange.h"
 #include "mesh/document/contacts.h"
 #include "mesh/document/document.h"
@@ -28,6 +29,11 @@ namespace prismesh::cli {
 std::string info_json(const mesh::document::Document& document);
 std::string check_json(const mesh::document::Document& document, const mesh::report::CheckFigures& figures);
 std::string diff_json(const mesh::report::Difference& difference);
+/// Of `report`. `missing`: why a picture is missing; empty: none is.
+std::string report_json(const std::string& file, std::size_t bytes, const std::string& missing);
+/// Of `batch`: how the study stands.
+std::string batch_json(const mesh::batch::Table& table, const std::string& page);
+std::string submitted_json(std::size_t variants, const std::string& job, const std::string& collector);
 std::string edit_json(const mesh::document::EditReport& report);
 std::string failed_edit_json(const std::string& edit, const std::string& reason);
 std::string replay_json(const std::vector<mesh::document::ReplayStep>& steps, const std::string& deck_hash, bool other_deck);

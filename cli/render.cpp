@@ -61,12 +61,6 @@ Result<std::unique_ptr<SealedSnapshot>> seal(const mesh::document::Document& doc
   return sealed;
 }
 
-/// A field for the kiosk: its values in shared memory, and the arguments that describe it.
-struct SealedField {
-  ipc::Descriptor values;
-  std::vector<std::string> arguments;
-};
-
 /// The legend's text for what a field is compared with.
 std::string compared_with(const FieldWish& wish, const RenderOptions& options) {
   if (wish.of == FieldWish::Of::gap) return "of " + wish.from + " from " + wish.to;
@@ -98,8 +92,9 @@ Result<std::optional<FieldWish>> wished_field(const RenderOptions& options) {
   return std::optional(std::move(*wish));
 }
 
-Result<SealedField> seal_field(const mesh::document::Document& document, const FieldWish& wish, const RenderOptions& options,
-                               const Context& context) {
+/// The same of the options: reads the deck that the field compares with.
+Result<SealedField> seal_wished(const mesh::document::Document& document, const FieldWish& wish, const RenderOptions& options,
+                                const Context& context) {
   std::optional<mesh::deck::OpenedDeck> other;
   if (needs_other(wish)) {
     MonotonicClock clock;
@@ -109,26 +104,7 @@ Result<SealedField> seal_field(const mesh::document::Document& document, const F
     if (!opened) return fail(std::move(opened.error()));
     other = std::move(*opened);
   }
-  const mesh::document::Generation& current = document.current();
-  const auto field = make_field(wish, current, document, other ? &other->model : nullptr);
-  if (!field) return fail(field.error());
-  Result<ipc::Descriptor> values = ipc::seal_field(current.number, field->on_nodes, field->values);
-  if (!values) return fail(std::move(values.error()));
-  const FieldFigures figures = figures_of(*field, current.model);
-  // for a distance between two expressions only the first one's nodes are meant to have values
-  const std::size_t without = wish.of == FieldWish::Of::gap ? 0 : shells_without_value(current.model, *field);
-  const std::string limits = options.limits.value_or(shortest(field->limits.clear) + "," + shortest(field->limits.full));
-  SealedField sealed{std::move(*values), {}};
-  sealed.arguments = {"--field-fd",      std::to_string(sealed.values.get()),
-                      "--field-title",   field->title,
-                      "--field-unit",    field->unit,
-                      "--field-of",      compared_with(wish, options),
-                      "--field-range",   shortest(figures.min) + "," + shortest(figures.max),
-                      "--field-least",   figures.min_at,
-                      "--field-most",    figures.max_at,
-                      "--field-without", std::to_string(without),
-                      "--limits",        limits};
-  return sealed;
+  return seal_field(document, wish, other ? &other->model : nullptr, compared_with(wish, options), options.limits);
 }
 
 /// Starts a program that inherits these descriptors under their numbers.
@@ -160,6 +136,29 @@ int wait_for(pid_t child, const Context& context) {
 }
 
 }  // namespace
+
+Result<SealedField> seal_field(const mesh::document::Document& document, const FieldWish& wish, const mesh::Model* other,
+                               const std::string& compared_with, const std::optional<std::string>& limits) {
+  const mesh::document::Generation& current = document.current();
+  const auto field = make_field(wish, current, document, other);
+  if (!field) return fail(field.error());
+  Result<ipc::Descriptor> values = ipc::seal_field(current.number, field->on_nodes, field->values);
+  if (!values) return fail(std::move(values.error()));
+  const FieldFigures figures = figures_of(*field, current.model);
+  // for a distance between two expressions only the first one's nodes are meant to have values
+  const std::size_t without = wish.of == FieldWish::Of::gap ? 0 : shells_without_value(current.model, *field);
+  SealedField sealed{std::move(*values), {}};
+  sealed.arguments = {"--field-fd",      std::to_string(sealed.values.get()),
+                      "--field-title",   field->title,
+                      "--field-unit",    field->unit,
+                      "--field-of",      compared_with,
+                      "--field-range",   shortest(figures.min) + "," + shortest(figures.max),
+                      "--field-least",   figures.min_at,
+                      "--field-most",    figures.max_at,
+                      "--field-without", std::to_string(without),
+                      "--limits",        limits.value_or(shortest(field->limits.clear) + "," + shortest(field->limits.full))};
+  return sealed;
+}
 
 Result<int> draw_picture(const mesh::document::Document& document, const std::filesystem::path& output,
                          const std::vector<std::string>& more, int field, const Context& context) {
@@ -205,7 +204,7 @@ int render(const RenderOptions& options, const Common& common, const Context& co
   std::vector<std::string> arguments = options.passed_on;
   std::optional<SealedField> coloured;
   if (*wish) {
-    Result<SealedField> field = seal_field(*document, **wish, options, context);
+    Result<SealedField> field = seal_wished(*document, **wish, options, context);
     if (!field) return refuse(field.error());
     coloured = std::move(*field);
     arguments.insert(arguments.end(), coloured->arguments.begin(), coloured->arguments.end());

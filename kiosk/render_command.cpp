@@ -40,6 +40,9 @@ struct RenderOptions {
   tools::comparison::LegendFacts legend;
   int samples = 4;
   bool thickness = false;
+  bool has_legend = true;          ///< of a field
+  bool legend_below = false;       ///< the model is drawn above the legend, not behind it
+  std::optional<stereo::Box> box;  ///< fills the picture; empty: the whole model
 };
 
 /// Numbers separated by `separator`, nothing else; empty if the text is anything else.
@@ -115,6 +118,26 @@ Result<void> read_thickness(const std::string& text, RenderOptions& options) {
   return {};
 }
 
+Result<void> read_legend(const std::string& text, RenderOptions& options) {
+  if (text != "over" && text != "below" && text != "none") return wrong("--legend", text, "is over (the model), below (it) or none");
+  options.has_legend = text != "none";
+  options.legend_below = text == "below";
+  return {};
+}
+
+Result<void> read_box(const std::string& text, RenderOptions& options) {
+  const std::vector<double> sides = numbers<double>(text, ',');
+  stereo::Box box;
+  if (sides.size() == 6) {
+    box.add({sides[0], sides[1], sides[2]});
+    box.add({sides[3], sides[4], sides[5]});
+  }
+  if (box.empty() || !box.low.allFinite() || !box.high.allFinite() || box.low == box.high)
+    return wrong("--box", text, "write two different corners as X,Y,Z,X,Y,Z, in the deck's length unit");
+  options.box = box;
+  return {};
+}
+
 Result<void> read_view(const std::string& text, RenderOptions& options) {
   options.view = text;
   if (stereo::named_rotation(text)) return {};
@@ -180,6 +203,8 @@ Result<RenderOptions> parse(std::span<const std::string> arguments) {
       {"--eye", [&](const std::string& text) { return read_eye(text, options); }},
       {"--mask", [&](const std::string& text) { return read_mask(text, options); }},
       {"--view", [&](const std::string& text) { return read_view(text, options); }},
+      {"--legend", [&](const std::string& text) { return read_legend(text, options); }},
+      {"--box", [&](const std::string& text) { return read_box(text, options); }},
       {"--thickness", [&](const std::string& text) { return read_thickness(text, options); }},
       {"--colour", [&](const std::string& text) { return read_colour(text, options); }},
       {"--limits", [&](const std::string& text) { return read_limits(text, options); }},
@@ -215,6 +240,19 @@ Result<std::shared_ptr<const ipc::SnapshotView>> map_snapshot(const std::vector<
     segments.push_back(std::make_shared<const ipc::Mapping>(std::move(*mapping)));
   }
   return ipc::SnapshotView::map(table, segments);
+}
+
+/// The view of the whole model, or of the box. With the legend below, the model keeps to what is left above it.
+stereo::View view_of(const RenderOptions& options, const render::Renderer& renderer, const render::Picture& picture) {
+  constexpr double kLegendPixels = 190;
+  stereo::View view = picture.view;
+  Eigen::Vector2d screen = stereo::screen_size_mm(picture.profile, options.width, options.height);
+  if (options.field && options.legend_below && options.height > 2 * kLegendPixels) {
+    const double room = screen.y() * kLegendPixels / options.height;
+    screen.y() -= room;
+    view.middle_mm = {0, room / 2};
+  }
+  return options.box ? stereo::fit(view, *options.box, screen, options.eye_mm.z()) : renderer.fitted(view, screen, options.eye_mm.z());
 }
 
 /// Gives the renderer the field, and lays its legend out.
@@ -258,13 +296,14 @@ Result<void> render_picture(const RenderOptions& options, const stereo::Profile&
   picture.thickness = options.thickness;
   picture.view.rotation = *stereo::named_rotation(options.view);
   picture.view.bounds = stereo::sphere_around((*renderer)->bounds());
-  picture.view = (*renderer)->fitted(picture.view, stereo::screen_size_mm(profile, options.width, options.height), options.eye_mm.z());
+  picture.view = view_of(options, **renderer, picture);
   std::optional<panels::Gui> gui;
   if (options.field) {
     Result<panels::Gui> shown = show_field(options, **renderer, picture);
     if (!shown) return fail(shown.error());
     gui = std::move(*shown);
-    picture.overlay = [&](const render::EyeImage& image) { gui->draw({image.width, image.height}, image.from_picture); };
+    if (options.has_legend)
+      picture.overlay = [&](const render::EyeImage& image) { gui->draw({image.width, image.height}, image.from_picture); };
   }
   if (const std::string note = options.thickness ? toolkit::words_on_thickness((*snapshot)->info().parts) : std::string(); !note.empty())
     std::fprintf(stderr, "%s: note: %s\n", options.picture.c_str(), note.c_str());

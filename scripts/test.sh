@@ -236,6 +236,12 @@ run_soak() {
       </dev/null || status=$?
     count_one "station_test at random with PRISMESH_SEED=$seed" "$status"
   fi
+  say "A study of 1,000 variants on a real Slurm: killed workers, a restarted controller, a full disk"
+  status=0
+  if step "build: release" configure_and_build release -DPRISMESH_TESTS=ON -- prismesh; then
+    python3 -B tests/batch/batch_soak.py build/bin </dev/null || status=$?
+    if [ "$status" -eq 77 ]; then skipped=$((skipped + 1)); else count_one "batch_soak.py" "$status"; fi
+  fi
   say "The demo on every real deck with shells"
   status=0
   tests/checker/demo_decks.py || status=$?

@@ -16,15 +16,16 @@ namespace {
 using deck::OpenedDeck;
 using deck::SourceFile;
 
-/// Compares two id indices, ascending: calls `both(index in a, index in b)` for ids in both and `only_in_b(id)`. Returns how many ids were
-/// added and removed.
-template <class Both, class OnlyInB>
-std::pair<std::size_t, std::size_t> compare_ids(const IdIndex& a, const IdIndex& b, const Both& both, const OnlyInB& only_in_b) {
+/// Compares two id indices, ascending: calls `both(index in a, index in b)` for ids in both, `only_in_a(id)` and `only_in_b(id)`. Returns
+/// how many ids were added and removed.
+template <class Both, class OnlyInA, class OnlyInB>
+std::pair<std::size_t, std::size_t> compare_ids(const IdIndex& a, const IdIndex& b, const Both& both, const OnlyInA& only_in_a,
+                                                const OnlyInB& only_in_b) {
   std::size_t added = 0, removed = 0;
   for (std::size_t i = 0, j = 0; i < a.size() || j < b.size();) {
     if (j == b.size() || (i < a.size() && a.at(i).first < b.at(j).first)) {
       ++removed;
-      ++i;
+      only_in_a(a.at(i++).first);
     } else if (i == a.size() || b.at(j).first < a.at(i).first) {
       ++added;
       only_in_b(b.at(j++).first);
@@ -41,14 +42,15 @@ void compare_nodes(const Model& a, const Model& b, Difference& difference) {
     ++difference.nodes_moved;
     difference.moved.push_back(b.node_ids[in_b]);
   };
-  std::tie(difference.nodes_added, difference.nodes_removed) =
-      compare_ids(*a.node_index, *b.node_index, both, [&](std::int64_t id) { difference.added.push_back(id); });
+  std::tie(difference.nodes_added, difference.nodes_removed) = compare_ids(
+      *a.node_index, *b.node_index, both, [&](std::int64_t id) { difference.removed.push_back(id); },
+      [&](std::int64_t id) { difference.added.push_back(id); });
 }
 
 void compare_elements(const Model& a, const Model& b, Difference& difference) {
   const auto add = [&](const IdIndex& from, const IdIndex& to) {
     const auto [added, removed] = compare_ids(
-        from, to, [](std::uint32_t, std::uint32_t) {}, [](std::int64_t) {});
+        from, to, [](std::uint32_t, std::uint32_t) {}, [](std::int64_t) {}, [](std::int64_t) {});
     difference.elements_added += added;
     difference.elements_removed += removed;
   };
@@ -57,9 +59,13 @@ void compare_elements(const Model& a, const Model& b, Difference& difference) {
     const ShellNodes& to = b.shell_nodes[in_b];
     bool same = true;
     for (std::size_t c = 0; c < 4; ++c) same = same && a.node_ids[from.node[c].value] == b.node_ids[to.node[c].value];
-    if (!same) ++difference.elements_changed;
+    if (same) return;
+    ++difference.elements_changed;
+    difference.shells_changed.push_back(b.shell_ids[in_b]);
   };
-  const auto [added, removed] = compare_ids(*a.shell_index, *b.shell_index, both, [](std::int64_t) {});
+  const auto [added, removed] = compare_ids(
+      *a.shell_index, *b.shell_index, both, [&](std::int64_t id) { difference.shells_removed.push_back(id); },
+      [&](std::int64_t id) { difference.shells_added.push_back(id); });
   difference.elements_added += added;
   difference.elements_removed += removed;
   for (std::size_t c = 0; c < a.elements.size(); ++c)

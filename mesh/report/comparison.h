@@ -21,8 +21,9 @@ struct Difference {
   std::size_t elements_removed = 0;
   std::size_t elements_changed = 0;  ///< shells in both with other corners
   std::size_t lines_changed = 0;
-  std::vector<std::int64_t> moved, added;        ///< ids of nodes, ascending
-  std::optional<FieldFigures> displacement;      ///< of nodes in both; absent if there are none
+  std::vector<std::int64_t> moved, added, removed;                         ///< ids of nodes, ascending
+  std::vector<std::int64_t> shells_added, shells_removed, shells_changed;  ///< ids of shells, ascending
+  std::optional<FieldFigures> displacement;                                ///< of nodes in both; absent if there are none
   std::optional<FieldFigures> surface_distance;  ///< of the second deck's shell corners from the first deck's shells
 };
 

@@ -39,6 +39,7 @@ const std::vector<Module>& modules() {
       {"mesh/repair", {"mesh/relax"}},
       {"mesh/document", {"base/json", "mesh/contact", "mesh/deck", "mesh/repair", "mesh/select", "mesh/shape"}},
       {"mesh/report", {"mesh/document"}},
+      {"mesh/batch", {"base/json", "mesh/report"}},
 
       {"drivers/settings", {"drivers/haptic_pen"}},
       {"drivers/port", {"base"}},
@@ -118,7 +119,7 @@ const std::vector<Module>& modules() {
         "kiosk/tools/parts",     "kiosk/tools/history", "kiosk/tools/view",       "kiosk/calibration",      "kiosk/display/kms",
         "kiosk/display/x11",     "drivers/settings"}},
 
-      {"cli", {"ipc/device", "ipc/import", "ipc/model", "ipc/pen", "ipc/remote", "mesh/measure", "mesh/report", "drivers/settings"}},
+      {"cli", {"ipc/device", "ipc/import", "ipc/model", "ipc/pen", "ipc/remote", "mesh/batch", "mesh/measure", "drivers/settings"}},
       {"python", {"mesh/report"}},
   };
   return kModules;

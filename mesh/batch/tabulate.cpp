@@ -1,0 +1,110 @@
+#include "mesh/batch/tabulate.h"
+
+#include <nlohmann/json.hpp>
+
+#include "mesh/batch/columns.h"
+#include "mesh/batch/records.h"
+
+namespace prismesh::mesh::batch {
+
+Result<Table> tabulate(const Study& study, const Store& store) {
+  const Variants variants(study);
+  Table table;
+  table.name = study.plan.name;
+  table.plan_file = study.plan_file.filename().string();
+  for (const Parameter& parameter : study.plan.parameters) table.parameters.push_back(parameter.name);
+  for (std::size_t number = 0; number < variants.count(); ++number) {
+    const Variant variant = variants.at(number);
+    Result<std::string> key = variants.key(variant);
+    if (!key) return fail(key.error());
+    Row row;
+    row.number = number + 1;
+    row.key = std::move(*key);
+    row.deck = study.decks[variant.deck].path.filename().string();
+    row.script = study.scripts[variant.script].file.filename().string();
+    row.values = variant.values;
+    if (store.has(row.key)) {
+      Result<VariantResult> result = read_result(store.folder_of(row.key) / "result.json");
+      if (!result) return fail(result.error());
+      row.state = result->outcome == Outcome::done ? RowState::done : RowState::refused;
+      row.reason = result->reason;
+      if (table.length_unit.empty()) table.length_unit = result->length_unit;
+      row.result = std::move(*result);
+    } else if (const std::optional<Failure> failure = store.failure_of(row.key)) {
+      row.state = RowState::failed;
+      row.reason = failure->reason;
+    }
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+namespace {
+
+/// A field of CSV (RFC 4180). A text that a spreadsheet would take for a formula gets an apostrophe before it.
+std::string csv_field(std::string text, bool is_text) {
+  if (is_text && !text.empty() && std::string_view("=+-@\t\r").find(text[0]) != std::string_view::npos) text.insert(0, 1, '\'');
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
+}  // namespace
+
+std::string table_csv(const Table& table) {
+  std::string out = "variant,state,deck,script";
+  for (const std::string& parameter : table.parameters) out += "," + parameter;
+  for (const Column& column : columns())
+    out += "," + std::string(column.name) + (column.before != nullptr ? "," + std::string(column.name) + "_before" : "");
+  out += ",reason,file\r\n";
+  for (const Row& row : table.rows) {
+    out += std::to_string(row.number) + "," + std::string(name(row.state)) + "," + csv_field(row.deck, true) + "," +
+           csv_field(row.script, true);
+    for (const ParameterValue& value : row.values) out += "," + csv_field(words(value), std::holds_alternative<std::string>(value));
+    const auto add = [&](const std::optional<double>& figure) { out += "," + (figure ? words(*figure) : std::string()); };
+    for (const Column& column : columns()) {
+      add(figure_of(column, row));
+      if (column.before != nullptr) add(figure_before(column, row));
+    }
+    out += "," + csv_field(row.reason, true) + "," + csv_field(written_file(row), true) + "\r\n";
+  }
+  return out;
+}
+
+std::string table_json(const Table& table) {
+  using Json = nlohmann::ordered_json;
+  Json rows = Json::array();
+  for (const Row& row : table.rows) {
+    Json values = Json::object();
+    for (std::size_t p = 0; p < row.values.size(); ++p)
+      std::visit([&](const auto& value) { values[table.parameters[p]] = value; }, row.values[p]);
+    Json entry{
+        {"variant", row.number}, {"state", name(row.state)}, {"deck", row.deck}, {"script", row.script}, {"values", std::move(values)}};
+    const auto add = [&](const std::string& field, const std::optional<double>& figure) {
+      entry[field] = figure ? Json(*figure) : Json(nullptr);
+    };
+    for (const Column& column : columns()) {
+      add(std::string(column.name), figure_of(column, row));
+      if (column.before != nullptr) add(std::string(column.name) + "_before", figure_before(column, row));
+    }
+    entry["reason"] = row.reason.empty() ? Json(nullptr) : Json(row.reason);
+    const std::string file = written_file(row);
+    entry["file"] = file.empty() ? Json(nullptr) : Json(file);
+    entry["notes"] = row.result ? Json(row.result->notes) : Json::array();
+    entry["key"] = row.key;
+    rows.push_back(std::move(entry));
+  }
+  const Json all{{"study", table.name},
+                 {"plan", table.plan_file},
+                 {"length_unit", table.length_unit.empty() ? Json(nullptr) : Json(table.length_unit)},
+                 {"variants", table.rows.size()},
+                 {"done", table.count(RowState::done)},
+                 {"refused", table.count(RowState::refused)},
+                 {"failed", table.count(RowState::failed)},
+                 {"missing", table.count(RowState::missing)},
+                 {"rows", std::move(rows)}};
+  return all.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace prismesh::mesh::batch
