@@ -6,6 +6,7 @@ umask 077
 mkdir -p "$1"
 cd "$1"
 [ ! -s update.crt ] || [ ! -s boot-db.auth ] || exit 0
+[ -z "$(find . -name '*.key')" ] || { echo "keys.sh: $PWD has keys, but not all that belong to them; none is overwritten" >&2; exit 1; }
 request() { openssl req -new -newkey rsa:3072 -nodes -keyout "$1.key" -subj "/O=Prismesh/CN=$2" "${@:3}" 2>/dev/null; }
 request update-ca "Prismesh updates: authority" -x509 -days 7300 -out update-ca.crt -addext basicConstraints=critical,CA:TRUE -addext keyUsage=critical,keyCertSign,cRLSign
 request update "Prismesh updates" -out update.csr

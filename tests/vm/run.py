@@ -244,7 +244,7 @@ def at_rest(proof, guest):
     """What reaches the disk while nobody works. The devices are off: the emulation is too slow for the servo's line, and deviced logs each loss."""
     guest.run("systemctl stop prismesh-deviced.socket prismesh-deviced.service")
     settled(guest, "rest", quiet=20)
-    guest.run("sync; touch /run/rest")
+    guest.run("systemctl stop systemd-tmpfiles-clean.timer; journalctl --sync; sync; touch /run/rest")
     sectors = "awk '{print $7}' /sys/block/vda/stat"
     first = int(guest.run(sectors))
     time.sleep(120)

@@ -258,6 +258,11 @@ def first_start(proof, versions, out):
         finally:
             station.kill()
         at, size = partition(disk, "prismesh-data")
+        with open(disk, "rb") as file:
+            file.seek(at + 1024)
+            block = file.read(64)
+        blocks, block_size = int.from_bytes(block[4:8], "little"), 1024 << int.from_bytes(block[24:28], "little")
+        proof.check(f"and its file system the whole partition: {blocks * block_size >> 20} MB", blocks * block_size >= size - 2 * block_size, str(size))
         proof.check(f"its data partition has taken the rest of the disk: {size >> 20} MB", size > partition(out / "new.img", "prismesh-data")[1] + (1 << 30) - (4 << 20), str(size))
 
         def text(name):
