@@ -239,6 +239,10 @@ int batch(const BatchOptions& options, const Common& common, const Context& cont
     say(context, Error{"prismesh batch", 0, "the plan says length_unit, target_size and criteria, so that every worker has the same"});
     return kWrongUsage;
   }
+  if (options.task && *options.task >= options.tasks) {
+    say(context, Error{"--task", 0, "tasks count from 0 and there are " + std::to_string(options.tasks) + ": give --tasks as well"});
+    return kWrongUsage;
+  }
   const Result<Study> study = read_plan_or_study(options.plan, context);
   if (!study) {
     say(context, study.error());

@@ -143,7 +143,11 @@ Result<WorkToDo> work_left(const mesh::batch::Study& study, const Store& store, 
   for (const std::size_t number : numbers) {
     Result<std::string> key = variants.key(variants.at(number));
     if (!key) return fail(key.error());
-    if (!seen.insert(*key).second || store.has(*key)) continue;
+    if (!seen.insert(*key).second) continue;
+    if (store.has(*key)) {
+      if (store.result_of(*key)) continue;
+      if (Result<void> aside = store.set_aside(*key); !aside) return fail(aside.error());
+    }
     work.numbers.push_back(number);
     work.keys.push_back(std::move(*key));
   }

@@ -48,6 +48,15 @@ Result<mesh::document::Document> open_sandboxed(const std::filesystem::path& dec
   return fail(std::move(imported.error()));
 }
 
+Result<void> check_replaces_no_deck(const std::filesystem::path& output, const mesh::document::Document& document) {
+  for (const mesh::deck::SourceFile& file : document.deck->files) {
+    std::error_code other;
+    if (std::filesystem::equivalent(output, file.path, other) && !other)
+      return fail(output.string(), "is a file of the deck, and would be replaced: name another file with -o");
+  }
+  return {};
+}
+
 Result<mesh::deck::SaveReport> save_deck(const mesh::document::Document& document, const std::filesystem::path& target,
                                          const Context& context) {
   MonotonicClock clock;

@@ -18,6 +18,9 @@ Result<mesh::document::Document> open_deck(const std::filesystem::path& deck, co
 /// source, aren't read. Says what the sandbox can't forbid here. Errors: those of ipc::import_deck and document::open, with a file.
 Result<mesh::document::Document> open_sandboxed(const std::filesystem::path& deck, const Common& common, const Context& context);
 
+/// Errors: `output` is a file of the deck, which a picture or a page must not replace.
+Result<void> check_replaces_no_deck(const std::filesystem::path& output, const mesh::document::Document& document);
+
 /// Saves with a progress bar; when cancelled it writes nothing. Errors: those of document::save, with a file.
 Result<mesh::deck::SaveReport> save_deck(const mesh::document::Document& document, const std::filesystem::path& target,
                                          const Context& context);

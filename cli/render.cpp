@@ -195,6 +195,7 @@ int render(const RenderOptions& options, const Common& common, const Context& co
   if (!kiosk) return refuse(kiosk.error());
   Result<mesh::document::Document> document = open_deck(options.deck, common, context);
   if (!document) return refuse(document.error());
+  if (const Result<void> other = check_replaces_no_deck(options.output, *document); !other) return refuse(other.error());
   if (options.select) {
     mesh::document::Select select;
     select.expr = *options.select;

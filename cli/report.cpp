@@ -133,6 +133,11 @@ int report(const ReportOptions& options, const Common& common, const Context& co
   if (!before) return refuse(before.error());
   const Result<Document> after = open_after(options.b, *before, common, context);
   if (!after) return refuse(after.error());
+  for (const Document* document : {&*before, &*after})
+    if (const Result<void> other = check_replaces_no_deck(options.output, *document); !other) return refuse(other.error());
+  std::error_code unlike;
+  if (options.journal && std::filesystem::equivalent(options.output, *options.journal, unlike) && !unlike)
+    return refuse({options.output.string(), 0, "is the journal, and would be replaced: name another file with -o"});
   Result<std::optional<mesh::report::KnownEdits>> edits = std::optional<mesh::report::KnownEdits>();
   if (options.journal) {
     Result<mesh::report::KnownEdits> known = mesh::report::known_edits(*options.journal, *before);

@@ -132,8 +132,11 @@ class PlanReader {
   }
 
   Result<double> number(const toml::node& node, const std::string& what) const {
-    const auto value = node.value<double>();
-    if (!node.is_number() || !(std::abs(*value) <= kMaxValue)) return error(node, what + " must be a number");
+    // a whole number beyond 2^53 is no double to toml++
+    const std::optional<std::int64_t> whole = node.is_integer() ? node.value<std::int64_t>() : std::nullopt;
+    const std::optional<double> value = whole ? static_cast<double>(*whole) : node.value<double>();
+    if (!node.is_number() || !value || std::isnan(*value)) return error(node, what + " must be a number");
+    if (std::abs(*value) > kMaxValue) return error(node, what + " must be a number from -1e15 to 1e15");
     return *value;
   }
 
@@ -157,9 +160,11 @@ class PlanReader {
       if (!plan_.length_unit) return error(*unit, "length_unit must be mm, m or in");
     }
     if (const toml::node* size = root.get("target_size")) {
-      if (size->is_number())
-        plan_.target_size = *size->value<double>();
-      else if (size->value<std::string>() == "part" || size->value<std::string>() == "deck")
+      if (size->is_number()) {
+        const Result<double> value = number(*size, "target_size");
+        if (!value) return fail(value.error());
+        plan_.target_size = *value;
+      } else if (size->value<std::string>() == "part" || size->value<std::string>() == "deck")
         plan_.target_size = *size->value<std::string>() == "part" ? document::SizeGuess::part : document::SizeGuess::deck;
       const double* length = plan_.target_size ? std::get_if<double>(&*plan_.target_size) : nullptr;
       if (!plan_.target_size || (length != nullptr && !(*length > 0 && *length <= kMaxValue)))
@@ -222,7 +227,8 @@ class PlanReader {
         continue;
       }
       const Result<double> value = number(each, "a value of " + parameter.name);
-      if (!value) return error(each, "a value of " + parameter.name + " must be a number or a text");
+      if (!value)
+        return each.is_number() ? fail(value.error()) : error(each, "a value of " + parameter.name + " must be a number or a text");
       parameter.values.emplace_back(*value);
     }
     return {};

@@ -68,6 +68,24 @@ bool Store::has(const std::string& key) const {
   return fs::exists(folder_of(key) / "result.json", failed);
 }
 
+Result<VariantResult> Store::result_of(const std::string& key) const {
+  Result<VariantResult> result = read_result(folder_of(key) / "result.json");
+  std::error_code failed;
+  if (result && !result->written.empty() && !fs::is_regular_file(folder_of(key) / result->written, failed))
+    return fail((folder_of(key) / result->written).string(), "the variant's deck is gone");
+  return result;
+}
+
+Result<void> Store::set_aside(const std::string& key) const {
+  const fs::path target = folder_ / "damaged" / key;
+  if (Result<void> made = make_folders(target.parent_path()); !made) return made;
+  std::error_code failed;
+  fs::remove_all(target, failed);
+  fs::rename(folder_of(key), target, failed);
+  if (failed) return fail(folder_of(key).string(), "this damaged result can't be moved out of the way: " + failed.message());
+  return {};
+}
+
 Result<WorkFolder> Store::begin(const std::string& key) const {
   const fs::path variants = folder_ / "variants";
   if (Result<void> made = make_folders(variants); !made) return fail(made.error());

@@ -33,6 +33,10 @@ class Store {
   const std::filesystem::path& folder() const { return folder_; }
   std::filesystem::path folder_of(const std::string& key) const { return folder_ / "variants" / key; }
   bool has(const std::string& key) const;
+  /// Errors: there is none; it can't be read; its deck is gone.
+  Result<VariantResult> result_of(const std::string& key) const;
+  /// Moves a result that can't be used into the folder `damaged`, so that the variant is worked again. Errors: the disk's.
+  Result<void> set_aside(const std::string& key) const;
 
   /// Makes a folder for work on a variant, on the file system of the results. Errors: it can't be made.
   Result<WorkFolder> begin(const std::string& key) const;

@@ -1,5 +1,8 @@
 #include "mesh/batch/tabulate.h"
 
+#include <filesystem>
+#include <set>
+
 #include <nlohmann/json.hpp>
 
 #include "mesh/batch/columns.h"
@@ -7,9 +10,20 @@
 
 namespace prismesh::mesh::batch {
 
+namespace {
+
+/// As the plan names a file: two may have the same name in different folders.
+std::string as_named(const std::filesystem::path& file, const Study& study) {
+  const std::filesystem::path relative = file.lexically_relative(study.plan_file.parent_path());
+  return (relative.empty() || *relative.begin() == ".." ? file : relative).generic_string();
+}
+
+}  // namespace
+
 Result<Table> tabulate(const Study& study, const Store& store) {
   const Variants variants(study);
   Table table;
+  std::set<std::string> units;
   table.name = study.plan.name;
   table.plan_file = study.plan_file.filename().string();
   for (const Parameter& parameter : study.plan.parameters) table.parameters.push_back(parameter.name);
@@ -20,22 +34,28 @@ Result<Table> tabulate(const Study& study, const Store& store) {
     Row row;
     row.number = number + 1;
     row.key = std::move(*key);
-    row.deck = study.decks[variant.deck].path.filename().string();
-    row.script = study.scripts[variant.script].file.filename().string();
+    row.deck = as_named(study.decks[variant.deck].path, study);
+    row.script = as_named(study.scripts[variant.script].file, study);
     row.values = variant.values;
     if (store.has(row.key)) {
-      Result<VariantResult> result = read_result(store.folder_of(row.key) / "result.json");
-      if (!result) return fail(result.error());
-      row.state = result->outcome == Outcome::done ? RowState::done : RowState::refused;
-      row.reason = result->reason;
-      if (table.length_unit.empty()) table.length_unit = result->length_unit;
-      row.result = std::move(*result);
+      Result<VariantResult> result = store.result_of(row.key);
+      if (result) {
+        row.state = result->outcome == Outcome::done ? RowState::done : RowState::refused;
+        row.reason = result->reason;
+        units.insert(result->length_unit);
+        row.result = std::move(*result);
+      } else {
+        row.state = RowState::failed;
+        row.reason = result.error().text() + "; the next start works it again";
+      }
     } else if (const std::optional<Failure> failure = store.failure_of(row.key)) {
       row.state = RowState::failed;
       row.reason = failure->reason;
     }
     table.rows.push_back(std::move(row));
   }
+  // Lengths of decks in several units aren't told as if they were of one.
+  if (units.size() == 1) table.length_unit = *units.begin();
   return table;
 }
 
@@ -89,6 +109,7 @@ std::string table_json(const Table& table) {
       if (column.before != nullptr) add(std::string(column.name) + "_before", figure_before(column, row));
     }
     entry["reason"] = row.reason.empty() ? Json(nullptr) : Json(row.reason);
+    entry["length_unit"] = row.result ? Json(row.result->length_unit) : Json(nullptr);
     const std::string file = written_file(row);
     entry["file"] = file.empty() ? Json(nullptr) : Json(file);
     entry["notes"] = row.result ? Json(row.result->notes) : Json::array();

@@ -156,6 +156,7 @@ class Batch(unittest.TestCase):
                 self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
                 self.assertFalse(study.results.exists())
         self.assertEqual(study.batch("--local", "--slurm").returncode, 2)
+        self.assertEqual(study.batch("--task", "7", "--tasks", "2").returncode, 2)
         self.assertEqual(study.batch("--local", "--target-size", "3").returncode, 2)
         study.plan.write_text(head + "[parameters]\nheight = [1]\n")
         done = study.batch("--slurm", env={**os.environ, "PATH": "/nowhere"})

@@ -216,6 +216,14 @@ class Report(unittest.TestCase):
             self.assertEqual(done.returncode, status, done.stderr)
             self.assertIn(words, done.stderr)
             self.assertFalse(self.out.exists())
+        deck = self.a.read_bytes()
+        journal = self.folder / "edits.jsonl"
+        journal.write_text("")
+        for arguments in ([self.a, self.b, "-o", self.a], [self.b, self.a, "-o", self.a], [self.a, self.b, "--journal", journal, "-o", journal]):
+            done = prismesh("report", *arguments)
+            self.assertEqual(done.returncode, 1)
+            self.assertIn(b"would be replaced: name another file with -o", done.stderr)
+        self.assertEqual((self.a.read_bytes(), journal.read_bytes()), (deck, b""))
         done = prismesh("report", self.a, self.b, "-o", "/proc/none/report.html")
         self.assertEqual(done.returncode, 1)
 

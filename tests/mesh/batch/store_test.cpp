@@ -218,6 +218,19 @@ TEST_F(StudyTest, a_variant_is_worked_and_told_in_the_table) {
   EXPECT_TRUE(table->rows[0].result->after.penetrations);
   EXPECT_THAT(table_csv(*table), HasSubstr("2,refused,a.k,s.jsonl,99,"));
 
+  // results that somebody has damaged
+  const std::string first = table->rows[0].key, second = table->rows[1].key;
+  fs::remove(store.folder_of(first) / "a.k");
+  std::ofstream(store.folder_of(second) / "result.json") << "{";
+  const Result<Table> damaged = tabulate(*study, store);
+  ASSERT_TRUE(damaged) << damaged.error().text();
+  EXPECT_EQ(damaged->count(RowState::failed), 2U);
+  EXPECT_THAT(damaged->rows[0].reason, HasSubstr("a.k: the variant's deck is gone; the next start works it again"));
+  EXPECT_THAT(damaged->rows[1].reason, HasSubstr("isn't JSON"));
+  ASSERT_TRUE(store.set_aside(first));
+  EXPECT_FALSE(store.has(first));
+  EXPECT_TRUE(fs::exists(folder_ / "p.results/damaged" / first / "result.json"));
+
   // a deck that changes while the plan runs
   write("a.k", "$ a comment\n" + read(folder_ / "a.k"));
   const auto changed = work_variant(*study, variants, variants.at(2), folder_, {}, clock);
