@@ -156,6 +156,7 @@ std::optional<Box> picture_box(const Model& model, std::span<const Vec3> places)
       for (const NodeIndex node : model.shell_nodes[shell].node) add_to(whole, model.position(node));
   const double of_model = whole ? (whole->max - whole->min).norm() : 0;
   const double size = std::max((box->max - box->min).norm() * (1 + kRoomAbout), of_model * kLeastOfModel);
+  if (!(size > 0)) return std::nullopt;  // a model of one point has no size to look at
   const Vec3 middle = (box->min + box->max) / 2;
   const Vec3 half = ((box->max - box->min) / 2).cwiseMax(Vec3::Constant(size / 4));
   return Box{middle - half, middle + half};
