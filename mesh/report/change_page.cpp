@@ -21,7 +21,7 @@ constexpr std::size_t kEditCharacters = 2000;
 constexpr const char* kUnknown = "not known";
 
 std::string number(double value, int digits = 6) { return std::isfinite(value) ? readable(value, digits) : kUnknown; }
-std::string number(const std::optional<double>& value) { return value ? number(*value) : kUnknown; }
+std::string number(const std::optional<double>& value, int digits = 6) { return value ? number(*value, digits) : kUnknown; }
 std::string place(const Vec3& at) { return readable({at.x(), at.y(), at.z()}, 7); }
 
 std::string signed_number(double value) { return (value > 0 ? "+" : "") + number(value, 4); }
@@ -92,6 +92,11 @@ std::string pictures_section(const ChangePictures& pictures) {
   return out;
 }
 
+/// What only shells have; nothing without any.
+std::optional<double> of_shells(const quality::Report& report, double value) {
+  return report.elements > 0 ? std::optional(value) : std::nullopt;
+}
+
 std::string figures_section(const ChangeReport& report) {
   const quality::Report &a = report.before.check.report, &b = report.after.check.report;
   std::string out =
@@ -102,10 +107,13 @@ std::string figures_section(const ChangeReport& report) {
   out += row("shells that are ok", a.counts.ok, b.counts.ok);
   out += row("shells that warn", a.counts.warn, b.counts.warn);
   out += row("shells that fail", a.counts.fail, b.counts.fail);
-  out +=
-      row("triangles, %", number(a.triangles_percent, 4), number(b.triangles_percent, 4), change(a.triangles_percent, b.triangles_percent));
-  out += row("composite, least", number(a.min_composite, 4), number(b.min_composite, 4), change(a.min_composite, b.min_composite));
-  out += row("composite, mean", number(a.mean_composite, 4), number(b.mean_composite, 4), change(a.mean_composite, b.mean_composite));
+  const auto shown = [&](const char* what, double before, double after) {
+    const std::optional<double> had = of_shells(a, before), has = of_shells(b, after);
+    return row(what, number(had, 4), number(has, 4), had && has ? change(*had, *has) : "");
+  };
+  out += shown("triangles, %", a.triangles_percent, b.triangles_percent);
+  out += shown("composite, least", a.min_composite, b.min_composite);
+  out += shown("composite, mean", a.mean_composite, b.mean_composite);
   out += row("mass", number(a.mass), number(b.mass), change(a.mass, b.mass));
   const auto centre = [](const quality::Report& of) { return of.centre_of_gravity ? place(*of.centre_of_gravity) : std::string(kUnknown); };
   const bool centres = a.centre_of_gravity && b.centre_of_gravity;
@@ -171,7 +179,8 @@ std::string quality_section(const ChangeReport& report) {
     out += "<figure data-metric=\"" + html_text(name(histogram.metric)) + "\"><h3>" + html_text(name(histogram.metric)) +
            (unit.empty() ? "" : ", " + html_text(unit)) + "</h3>" + histogram_svg(histogram, limits_of(report, histogram), unit) +
            "<figcaption>warn " + std::to_string(a.warn) + " → " + std::to_string(b.warn) + ", fail " + std::to_string(a.fail) + " → " +
-           std::to_string(b.fail) + "; mean " + number(a.mean, 4) + " → " + number(b.mean, 4) + "</figcaption></figure>\n";
+           std::to_string(b.fail) + "; mean " + number(of_shells(report.before.check.report, a.mean), 4) + " → " +
+           number(of_shells(report.after.check.report, b.mean), 4) + "</figcaption></figure>\n";
   }
   out += "</div>\n";
   if (report.failed_count == 0) return out + "<p>No shell fails after the change.</p>\n";
