@@ -18,6 +18,7 @@
 #include "daemon/deviced/pen/line_guard.h"
 #include "daemon/deviced/pen/open_pen.h"
 #include "daemon/deviced/pen/pen_thread.h"
+#include "daemon/deviced/pen/weighing_line.h"
 #include "daemon/deviced/realtime/realtime.h"
 #include "drivers/haptic_pen/weighing.h"
 #include "drivers/settings/settings.h"
@@ -32,13 +33,12 @@ using drivers::haptic_pen::Weighing;
 using drivers::haptic_pen::WeighingOptions;
 using drivers::haptic_pen::WeighingStep;
 
-constexpr std::int64_t kForceValidNs = 3'000'000;
 constexpr int kZerosAtEnd = 20;
 
 /// Ticks the weighing in real time; the other side only reads its step.
 class WeighingThread {
  public:
-  WeighingThread(Weighing& weighing, HapticPen& pen, GuardPage& guard) : weighing_(weighing), pen_(pen), guard_(guard) {}
+  WeighingThread(Weighing& weighing, HapticPen& pen, GuardPage& guard) : weighing_(weighing), pen_(pen), line_(pen, guard) {}
   ~WeighingThread() { end(); }
   WeighingThread(const WeighingThread&) = delete;
   WeighingThread& operator=(const WeighingThread&) = delete;
@@ -68,33 +68,22 @@ class WeighingThread {
       sleep_until(due_ns);
       const std::int64_t now_ns = clock_.now_ns();
       if (go_on_.exchange(false)) weighing_.go_on(now_ns);
-      // After the guard had to end a force none follows. Where it ended none, the weighing goes on.
-      if (guard_.is_tripped() && forces_) tripped_ = true;
-      const Eigen::Vector3d newton = weighing_.tick(pen_.read(now_ns), now_ns);
-      send(now_ns, tripped_ ? Eigen::Vector3d::Zero() : newton);
+      if (line_.send(now_ns, weighing_.tick(pen_.read(now_ns), now_ns))) tripped_ = true;
       step_ = weighing_.step();
       due_ns = next_pen_tick_ns(due_ns, clock_.now_ns());
     }
     for (int i = 0; i < kZerosAtEnd; ++i) {
-      send(clock_.now_ns(), Eigen::Vector3d::Zero());
+      line_.send(clock_.now_ns(), Eigen::Vector3d::Zero());
       sleep_until(clock_.now_ns() + kPenPeriodNs);
     }
   }
-  void send(std::int64_t now_ns, const Eigen::Vector3d& newton) {
-    forces_ = !newton.isZero();
-    pen_.send(now_ns, {newton, now_ns + kForceValidNs});
-    if (!forces_) guard_.acknowledge();
-    if (!pen_.is_stuck(now_ns)) guard_.beats.fetch_add(1);
-  }
-
   Weighing& weighing_;
   HapticPen& pen_;
-  GuardPage& guard_;
+  WeighingLine line_;
   MonotonicClock clock_;
   std::atomic<WeighingStep> step_ = WeighingStep::wait_for_pen;
   std::atomic<bool> go_on_ = false, stop_ = false, tripped_ = false;
   bool running_ = false;
-  bool forces_ = false;  ///< the last send asked for a force; of the thread alone
   StartedThread thread_;
 };
 
