@@ -19,9 +19,9 @@ import sys
 import tempfile
 import time
 
-# What users wait for: (row, benchmark program, its filter, what a figure is divided by, goal in milliseconds of processor time or None).
+# What users wait for: (row, benchmark program, its filter, what a figure is divided by, goal in milliseconds of wall time or None).
 ROWS = [
-    ("save in place, 1M shells, 10,000 nodes moved", "saving_bench", "save_in_place", None, None),
+    ("save in place, 1M shells, 10,000 nodes moved", "saving_bench", "save_in_place", None, 250),
     ("copy and flush the same file", "saving_bench", "copy_and_flush", None, None),
     ("edit of 586 nodes, 1,000 others selected", "document_bench", "translate_586_beside_a_selection/1000$", None, 5),
     ("edit of 586 nodes, 100,000 others selected", "document_bench", "translate_586_beside_a_selection/100000$", None, 5),
@@ -110,7 +110,7 @@ def number(value):
 
 
 def table_of(record):
-    lines = ["| work | wall ms | processor ms | goal |", "|---|---|---|---|"]
+    lines = ["| work | wall ms | processor ms | goal, wall ms |", "|---|---|---|---|"]
     goals = {row[0]: row[4] for row in ROWS}
     for name, figure in record["rows"].items():
         goal = goals.get(name)
