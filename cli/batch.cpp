@@ -31,7 +31,6 @@ using mesh::batch::Study;
 using mesh::batch::Table;
 
 constexpr const char* kPictureSize = "240x150";
-constexpr double kLeastColoured = 0.02;  ///< of the largest displacement
 
 /// A job's name may hold few characters.
 std::string file_name_of(std::string name) {
@@ -70,17 +69,14 @@ mesh::batch::Painter painter_of(const Study& study, const Context& context) {
                     const std::optional<mesh::report::PartFigures::Box>& box) -> Result<void> {
     std::vector<std::string> how{"--size", kPictureSize, "--profile", "mono"};
     if (box) {
-      std::string corners;
-      for (const mesh::Vec3* corner : {&box->min, &box->max})
-        for (int axis = 0; axis < 3; ++axis) corners += (corners.empty() ? "" : ",") + shortest((*corner)[axis]);
-      how.insert(how.end(), {"--box", corners});
+      how.insert(how.end(), {"--box", box_argument(*box)});
     }
     // coloured by displacement where a node has moved
     const mesh::Model& before = document.opened->model;
     const double most = mesh::largest_move(before, document.current().model, mesh::moved_nodes(before, document.current().model));
     std::optional<SealedField> field;
     if (most > 0) {
-      Result<SealedField> sealed = seal_field(document, {}, &before, "the deck", shortest(most * kLeastColoured) + "," + shortest(most));
+      Result<SealedField> sealed = seal_field(document, {}, &before, "the deck", displacement_limits(most));
       if (!sealed) return fail(sealed.error());
       field = std::move(*sealed);
       how.insert(how.end(), field->arguments.begin(), field->arguments.end());

@@ -10,6 +10,7 @@
 #include "ipc/wire/descriptor.h"
 #include "mesh/document/document.h"
 #include "mesh/document/field_wish.h"
+#include "mesh/report/figures.h"
 
 namespace prismesh::cli {
 
@@ -29,5 +30,10 @@ Result<SealedField> seal_field(const mesh::document::Document& document, const m
 /// killed.
 Result<int> draw_picture(const mesh::document::Document& document, const std::filesystem::path& output,
                          const std::vector<std::string>& more, int field, const Context& context);
+
+/// The kiosk's argument for a picture that is filled by a box.
+std::string box_argument(const mesh::report::PartFigures::Box& box);
+/// CLEAR,FULL of seal_field for displacements up to `largest`: what moved by less than a fiftieth of that keeps its part's colour.
+std::string displacement_limits(double largest);
 
 }  // namespace prismesh::cli

@@ -160,6 +160,15 @@ Result<SealedField> seal_field(const mesh::document::Document& document, const F
   return sealed;
 }
 
+std::string box_argument(const mesh::report::PartFigures::Box& box) {
+  std::string text;
+  for (const mesh::Vec3* corner : {&box.min, &box.max})
+    for (int axis = 0; axis < 3; ++axis) text += (text.empty() ? "" : ",") + shortest((*corner)[axis]);
+  return text;
+}
+
+std::string displacement_limits(double largest) { return shortest(largest / 50) + "," + shortest(largest); }
+
 Result<int> draw_picture(const mesh::document::Document& document, const std::filesystem::path& output,
                          const std::vector<std::string>& more, int field, const Context& context) {
   const Result<std::filesystem::path> kiosk = program_beside(kKiosk, "which draws pictures", "prismesh-station");

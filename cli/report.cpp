@@ -28,7 +28,6 @@ using mesh::report::PagePicture;
 
 constexpr const char* kSmall = "960x600";
 constexpr const char* kLarge = "1360x850";
-constexpr double kLeastColoured = 0.02;  ///< of the largest displacement
 
 /// Opens the second deck, judged as the first where that is possible.
 Result<Document> open_after(const std::filesystem::path& path, const Document& before, const Common& common, const Context& context) {
@@ -82,21 +81,14 @@ class Artist {
   std::string missing_;
 };
 
-std::string box_argument(const mesh::report::PartFigures::Box& box) {
-  std::string text;
-  for (const mesh::Vec3* corner : {&box.min, &box.max})
-    for (int axis = 0; axis < 3; ++axis) text += (text.empty() ? "" : ",") + shortest((*corner)[axis]);
-  return text;
-}
-
 /// Displacement in colours, of the whole model and of what changed; what changed without colours where no node has moved.
 void draw_differences(const Document& before, const Document& after, const ChangeReport& report, Artist& artist, ChangePictures& pictures) {
   if (!report.changed) return;
   const std::vector<std::string> near{"--size", kLarge, "--box", box_argument(*report.changed)};
   if (report.difference.max_displacement > 0) {
     const double most = report.difference.max_displacement;
-    const Result<SealedField> field = seal_field(after, {}, &before.current().model, "against " + report.before.name,
-                                                 shortest(most * kLeastColoured) + "," + shortest(most));
+    const Result<SealedField> field =
+        seal_field(after, {}, &before.current().model, "against " + report.before.name, displacement_limits(most));
     if (!field) {
       pictures.differences.push_back({"", "No picture of the displacement: " + field.error().text()});
     } else {
