@@ -5,7 +5,7 @@
 namespace prismesh::mesh::deck {
 namespace {
 
-/// Enough to get past any header of comments; a keyword of its own decides earlier.
+/// Enough to get past any header of comments; a keyword of its own decides earlier, and one that two formats share doesn't decide.
 constexpr std::size_t kLookedAt = std::size_t{256} << 10;
 constexpr std::size_t kMaxLineLength = 200;
 constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
@@ -61,6 +61,7 @@ struct Votes {
 };
 
 constexpr int kCertain = 1000;
+constexpr int kDecides = 20;  ///< a keyword that one format alone has
 
 bool is_word(std::string_view line, std::string_view word) {
   return line.starts_with(word) &&
@@ -77,33 +78,32 @@ void vote_on_asterisk(std::string_view line, Votes& votes) {
   votes.has_keywords |= !name.empty() && name[0] >= 'A' && name[0] <= 'Z' && line.find('*', 1) == std::string_view::npos;
   if (name.starts_with("KEYWORD")) votes.ls_dyna += kCertain;
   for (const std::string_view own : {"HEADING", "STEP", "PREPRINT", "INSTANCE", "ASSEMBLY", "ELSET", "NSET", "SHELL", "MATERIAL", "SOLID"})
-    if (name == own) votes.abaqus += 20;
+    if (name == own) votes.abaqus += kDecides;
   // Abaqus keywords take parameters with an equals sign and have blanks, those of LS-DYNA have underscores.
-  if (line.find(',') != std::string_view::npos && line.find('=') != std::string_view::npos) votes.abaqus += 20;
+  if (line.find(',') != std::string_view::npos && line.find('=') != std::string_view::npos) votes.abaqus += kDecides;
   for (const std::string_view own :
        {"ELEMENT_",  "SECTION_", "MAT_",  "PART",     "CONTROL_", "PARAMETER", "INCLUDE",      "SET_", "DEFINE_",   "DATABASE_",
         "BOUNDARY_", "CONTACT_", "LOAD_", "INITIAL_", "NODE",     "TITLE",     "CONSTRAINED_", "EOS_", "HOURGLASS", "END"})
-    if (name.starts_with(own)) votes.ls_dyna += name.find('_') != std::string_view::npos ? 20 : 2;
+    if (name.starts_with(own)) votes.ls_dyna += name.find('_') != std::string_view::npos ? kDecides : 2;
 }
 
 void vote_on_slash(std::string_view line, Votes& votes) {
   for (const std::string_view own : {"/BEGIN", "/NODE", "/SHELL/", "/SH3N/", "/PART/", "/PROP/", "/MAT/", "/TITLE", "/BRICK/", "/GRNOD/"})
-    if (line.starts_with(own)) votes.radioss += 20;
+    if (line.starts_with(own)) votes.radioss += kDecides;
   // Input of the Radioss engine, which the reader refuses by name.
   for (const std::string_view engine : {"/RUN/", "/VERS/", "/TFILE", "/RFILE", "/ANIM/", "/H3D/", "/STOP", "/PRINT/", "/MON/"})
-    if (line.starts_with(engine)) votes.radioss += 20;
+    if (line.starts_with(engine)) votes.radioss += kDecides;
 }
 
 void vote_on_word(std::string_view line, Votes& votes) {
   if (line.starts_with("BEGIN BULK") || is_word(line, "CEND")) votes.nastran += kCertain;
-  if (line.starts_with("NASTRAN ") || line.starts_with("SOL ")) votes.nastran += 20;
+  if (line.starts_with("NASTRAN ") || line.starts_with("SOL ")) votes.nastran += kDecides;
   for (const std::string_view card :
        {"GRID", "CQUAD4", "CTRIA3", "CQUAD1", "CHEXA", "CBAR", "CBEAM", "PSHELL", "PCOMP", "MAT1", "RBE2", "SPC1", "ENDDATA", "INCLUDE"})
     if (is_word(line, card)) votes.nastran += 10;
 }
 
-Votes count_votes(std::string_view text) {
-  Votes votes;
+void count_votes(std::string_view text, Votes& votes) {
   while (!text.empty()) {
     const std::size_t end = std::min(text.find('\n'), text.size());
     const std::string line = upper_line(text.substr(0, std::min(end, kMaxLineLength)));
@@ -118,8 +118,15 @@ Votes count_votes(std::string_view text) {
       vote_on_word(line, votes);
     if (votes.max() >= kCertain) break;
   }
-  if (votes.has_keywords) votes.abaqus += votes.abaqus_comments;
-  return votes;
+}
+
+/// Meshes begin with *NODE in two formats, and a large one has nothing else for long: looks at lines with an asterisk only, up to the first
+/// that decides.
+void look_for_a_deciding_keyword(std::string_view text, Votes& votes) {
+  for (std::size_t at = text.find("\n*"); at != std::string_view::npos && votes.max() < kDecides; at = text.find("\n*", at + 1)) {
+    const std::string_view line = text.substr(at + 1, kMaxLineLength);
+    vote_on_asterisk(upper_line(line.substr(0, line.find('\n'))), votes);
+  }
 }
 
 /// Whether lines end with carriage returns alone, as of old Macintosh computers and broken transfers: the text would be one line.
@@ -145,10 +152,14 @@ Detected detect_format(std::string_view text) {
   for (const Signature& signature : kSignatures)
     if (text.starts_with(signature.bytes)) return {{}, std::string(signature.meaning)};
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+  const std::string_view rest = text.size() > kLookedAt ? text.substr(kLookedAt) : std::string_view();
   text = text.substr(0, kLookedAt);
   if (has_carriage_returns_alone(text))
     return {{}, "text whose lines end with carriage returns alone; save it with LF or CRLF line ends first"};
-  const Votes votes = count_votes(text);
+  Votes votes;
+  count_votes(text, votes);
+  if (votes.has_keywords && votes.max() < kDecides) look_for_a_deciding_keyword(rest, votes);
+  if (votes.has_keywords) votes.abaqus += votes.abaqus_comments;
   const int most = votes.max();
   if (most == 0 || (most < kCertain && text.find('\0') != std::string_view::npos)) return {{}, describe(text)};
   if (votes.ls_dyna == most) return {Format::ls_dyna, {}};

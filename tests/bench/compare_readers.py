@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""How long Prismesh and python3-meshio take to read the same Nastran deck, in turns, in one run.
+"""How long Prismesh and python3-meshio take to read the same deck (Nastran or Abaqus), in turns, in one run.
 
-    PRISMESH_BENCH_TWIN=twin.bdf build/bin/deck_bench --benchmark_filter=twin     # writes a deck to compare with
+    PRISMESH_BENCH_TWINS=. build/bin/deck_bench --benchmark_filter=twin     # writes decks to compare with
     tests/bench/compare_readers.py twin.bdf [--bench PATH] [--python PATH] [--times 3]
 
 Each reading is a process of its own, and only the reading counts, not its start: deck_bench's opening, up to the complete model with
@@ -17,7 +17,7 @@ import sys
 READ = """
 import json, sys, time, meshio
 wall, cpu = time.perf_counter(), time.process_time()
-mesh = meshio.read(sys.argv[1], "nastran")
+mesh = meshio.read(sys.argv[1], "abaqus" if sys.argv[1].endswith(".inp") else "nastran")
 wall, cpu = time.perf_counter() - wall, time.process_time() - cpu
 print(json.dumps([wall, cpu, sum(len(block.data) for block in mesh.cells)]))
 """

@@ -1,5 +1,6 @@
-// Measures opening and saving a deck of a million shells: the sample's, or the one PRISMESH_BENCH_DECK names; and its Nastran twin, which
-// PRISMESH_BENCH_TWIN keeps at the path it gives. With PRISMESH_BENCH_LARGE also the sample of two and of five million shells.
+// Measures opening and saving a deck of a million shells: the sample's, or the one PRISMESH_BENCH_DECK names; and its twins in the other
+// formats, which PRISMESH_BENCH_TWINS keeps in the folder it names. With PRISMESH_BENCH_LARGE also the sample of two and of five million
+// shells.
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -11,12 +12,13 @@
 
 #include <benchmark/benchmark.h>
 
+#include "base/file.h"
 #include "mesh/deck/assembly/read_pieces.h"
 #include "mesh/deck/data/deck.h"
 #include "mesh/deck/open.h"
 #include "mesh/deck/sample.h"
 #include "mesh/deck/save.h"
-#include "tests/bench/nastran_twin.h"
+#include "tests/bench/deck_twins.h"
 
 namespace prismesh::mesh::deck {
 namespace {
@@ -132,24 +134,37 @@ void open_measured(benchmark::State& state, const fs::path& path) {
 void open_a_million(benchmark::State& state) { open_measured(state, place().deck()); }
 BENCHMARK(open_a_million)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 
-/// The same mesh as small-field Nastran. Errors: as those of opening the deck and of writing the twin.
-Result<fs::path> write_twin() {
+/// The same mesh in another format. Errors: as those of opening the deck and of writing the twin; the format can't hold the model's ids.
+Result<fs::path> write_twin(const char* name, std::string (*text_of)(const Model&)) {
   const Result<OpenedDeck> opened = open(place().deck());
   if (!opened) return fail(opened.error());
-  const char* kept = std::getenv("PRISMESH_BENCH_TWIN");
-  const fs::path twin = kept != nullptr ? fs::path(kept) : place().folder() / "twin.bdf";
-  if (const Result<void> written = bench::write_nastran_twin(opened->model, twin); !written) return fail(written.error());
+  const char* kept = std::getenv("PRISMESH_BENCH_TWINS");
+  const fs::path twin = (kept != nullptr ? fs::path(kept) : place().folder()) / name;
+  const std::string text = text_of(opened->model);
+  if (text.empty()) return fail(twin.string(), "can't be written: an id has more digits than the format takes");
+  const PendingFile file{twin, {text}};
+  if (const Result<void> written = replace_files({&file, 1}); !written) return fail(written.error());
   return twin;
 }
 
-void open_the_nastran_twin(benchmark::State& state) {
-  static const Result<fs::path> twin = write_twin();
-  if (twin)
+void open_a_twin(benchmark::State& state, const char* name, std::string (*text_of)(const Model&)) {
+  if (const Result<fs::path> twin = write_twin(name, text_of))
     open_measured(state, *twin);
   else
     state.SkipWithError(twin.error().text().c_str());
 }
-BENCHMARK(open_the_nastran_twin)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+BENCHMARK_CAPTURE(open_a_twin, nastran, "twin.bdf", bench::nastran_twin_text)
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime();
+BENCHMARK_CAPTURE(open_a_twin, radioss, "twin_0000.rad", bench::radioss_twin_text)
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime();
+BENCHMARK_CAPTURE(open_a_twin, abaqus, "twin.inp", bench::abaqus_twin_text)
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime();
 
 /// Checks that opening is linear: the counter shells_per_cpu_s should hardly decrease with the size.
 void open_millions(benchmark::State& state) {

@@ -9,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "mesh/deck/text/format_number.h"
 #include "tests/bench/million_document.h"
 
 namespace prismesh::cost {
@@ -115,59 +114,5 @@ std::string top_of_first_rail(const Model& rails) {
 }
 
 NodeIndex middle_of_top(const Model& rails) { return NodeIndex(rows_of(rails) / 2 * hat().size() + (kTopBegin + kTopEnd) / 2); }
-
-namespace {
-
-std::string right(const std::string& text, std::size_t width) { return std::string(width - std::min(width, text.size()), ' ') + text; }
-
-std::string coordinate(double value) { return mesh::deck::format_coordinate(value, 16); }
-
-}  // namespace
-
-std::string radioss_text(const Model& model) {
-  const auto whole = [](std::int64_t value) { return right(std::to_string(value), 10); };
-  std::string text = "#RADIOSS STARTER\n/BEGIN\nrails\n" + whole(2022) + whole(0) + "\n";
-  for (int i = 0; i < 2; ++i) text += right("Mg", 20) + right("mm", 20) + right("s", 20) + "\n";
-  text += "/NODE\n";
-  for (std::size_t i = 0; i < model.node_count(); ++i) {
-    text += whole(model.node_ids[i]);
-    for (int axis = 0; axis < 3; ++axis) text += right(coordinate(model.positions[i][axis]), 20);
-    text += '\n';
-  }
-  std::int64_t part = 0;
-  for (std::size_t i = 0; i < model.shell_count(); ++i) {
-    if (const std::int64_t id = (*model.parts)[model.shell_parts[i].value].id; id != part) {
-      part = id;
-      text += "/SHELL/" + std::to_string(part) + "\n";
-    }
-    text += whole(model.shell_ids[i]);
-    for (const NodeIndex node : model.shell_nodes[i].node) text += whole(model.node_ids[node.value]);
-    text += '\n';
-  }
-  for (const mesh::Part& each : *model.parts)
-    text += "/PART/" + std::to_string(each.id) + "\nrail\n" + whole(1) + whole(1) + whole(0) + "\n";
-  return text + "/END\n";
-}
-
-std::string abaqus_text(const Model& model) {
-  std::string text = "*HEADING\nRails\n*NODE\n";
-  for (std::size_t i = 0; i < model.node_count(); ++i) {
-    text += std::to_string(model.node_ids[i]);
-    for (int axis = 0; axis < 3; ++axis) text += ", " + coordinate(model.positions[i][axis]);
-    text += '\n';
-  }
-  std::int64_t part = 0;
-  for (std::size_t i = 0; i < model.shell_count(); ++i) {
-    if (const std::int64_t id = (*model.parts)[model.shell_parts[i].value].id; id != part) {
-      part = id;
-      text += "*ELEMENT, TYPE=S4R, ELSET=P" + std::to_string(part) + "\n";
-    }
-    text += std::to_string(model.shell_ids[i]);
-    for (const NodeIndex node : model.shell_nodes[i].node) text += ", " + std::to_string(model.node_ids[node.value]);
-    text += '\n';
-  }
-  for (const mesh::Part& each : *model.parts) text += "*SHELL SECTION, ELSET=P" + std::to_string(each.id) + ", MATERIAL=STEEL\n1., 5\n";
-  return text + "*MATERIAL, NAME=STEEL\n*DENSITY\n7.85E-9,\n*ELASTIC\n210000., 0.3\n";
-}
 
 }  // namespace prismesh::cost

@@ -21,8 +21,4 @@ std::string top_of_first_rail(const mesh::Model& rails);
 /// A node in the middle of that.
 mesh::NodeIndex middle_of_top(const mesh::Model& rails);
 
-/// The nodes and shells of a model as a deck. Parts get a section and a material.
-std::string radioss_text(const mesh::Model& model);
-std::string abaqus_text(const mesh::Model& model);
-
 }  // namespace prismesh::cost

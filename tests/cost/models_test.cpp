@@ -7,7 +7,7 @@
 #include "mesh/quality/report.h"
 #include "mesh/select/expression.h"
 #include "mesh/select/region.h"
-#include "tests/bench/nastran_twin.h"
+#include "tests/bench/deck_twins.h"
 #include "tests/mesh/deck/deck_files.h"
 
 namespace prismesh::cost {
@@ -22,8 +22,9 @@ TEST(CostModels, are_the_same_in_every_format) {
   const Model model = rails(kShells);
   ASSERT_EQ(model.shell_count(), kShells);
   const deck::DeckFolder folder;
-  for (const auto& [name, text] : {std::pair("rails.bdf", bench::nastran_twin_text(model)),
-                                   std::pair("rails_0000.rad", radioss_text(model)), std::pair("rails.inp", abaqus_text(model))}) {
+  for (const auto& [name, text] :
+       {std::pair("rails.bdf", bench::nastran_twin_text(model)), std::pair("rails_0000.rad", bench::radioss_twin_text(model)),
+        std::pair("rails.inp", bench::abaqus_twin_text(model))}) {
     const auto opened = deck::open(folder.write(name, text));
     ASSERT_TRUE(opened) << name << ": " << opened.error().text();
     ASSERT_EQ(opened->model.node_count(), model.node_count()) << name;

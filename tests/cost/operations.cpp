@@ -33,7 +33,7 @@
 #include "mesh/spatial/closest_point.h"
 #include "mesh/spatial/cut_patch.h"
 #include "mesh/spatial/geodesic.h"
-#include "tests/bench/nastran_twin.h"
+#include "tests/bench/deck_twins.h"
 #include "tests/cost/models.h"
 #include "tests/support/whole_model.h"
 
@@ -304,8 +304,8 @@ Inputs make_inputs(const std::filesystem::path& folder, std::size_t shells) {
   const Model model = rails(shells);
   write(folder / "sample.k", deck::sample_text(shells));
   write(folder / "rails.bdf", bench::nastran_twin_text(model));
-  write(folder / "rails_0000.rad", radioss_text(model));
-  write(folder / "rails.inp", abaqus_text(model));
+  write(folder / "rails_0000.rad", bench::radioss_twin_text(model));
+  write(folder / "rails.inp", bench::abaqus_twin_text(model));
   std::filesystem::create_directory(folder / "out");
   document::OpenOptions options;
   options.target_size = 5.0;

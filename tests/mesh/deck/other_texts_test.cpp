@@ -37,6 +37,22 @@ TEST(OtherTexts, decks_with_few_cards_are_decks) {
   EXPECT_EQ(opens("** a plate\n*BOUNDARY\n1, 1\n"), "abaqus");
 }
 
+TEST(OtherTexts, a_long_list_of_nodes_does_not_decide) {
+  std::string nodes = "*NODE\n";
+  for (int id = 1; id <= 20'000; ++id)
+    nodes += std::to_string(id) + ", " + std::to_string(id % 100) + ".5, " + std::to_string(id / 100) + ".25, 0.\n";
+  ASSERT_GT(nodes.size(), std::size_t{300'000});
+  const DeckFolder folder;
+  const auto opened = folder.open(nodes + "*ELEMENT, TYPE=S4, ELSET=sheet\n1, 1, 2, 102, 101\n");
+  ASSERT_TRUE(opened) << opened.error().text();
+  EXPECT_EQ(deck::name(opened->deck->format), "abaqus");
+  EXPECT_EQ(opened->model.shell_count(), 1u);
+  const auto other = folder.open(nodes + "*ELEMENT_SHELL\n1,1,1,2,102,101\n*END\n");
+  ASSERT_TRUE(other) << other.error().text();
+  EXPECT_EQ(deck::name(other->deck->format), "ls-dyna");
+  EXPECT_EQ(other->model.shell_count(), 1u);
+}
+
 TEST(OtherTexts, input_of_the_radioss_engine_is_named) {
   for (const char* text : {"/VERS/2022\n/RUN/deck/1\n10.\n", "#RADIOSS ENGINE\n/RUN/deck/1\n10.\n/TFILE\n0.1\n",
                            "/ANIM/DT\n0 1\n/ANIM/ELEM/EPSP\n", "/STOP\n 0 0 0\n/PRINT/-100\n", "/H3D/DT\n0 1\n", "/RFILE\n1000\n"}) {
