@@ -351,6 +351,10 @@ void add_bench(Parser& parser) {
   add_optional(app, "FILTER", options->filter,
                "measure only figures in whose names this regular expression is found; without DECK it may stand alone");
   add_elements(app, options->elements, "about how many shells the sample has", kBenchShellsDefault);
+  app->add_option_function<std::size_t>(
+         "--patch", [o = options](std::size_t nodes) { o->patch = nodes; },
+         "about how many nodes the patch has that is lifted (default " + std::to_string(kBenchPatchDefault) + ")")
+      ->check(CLI::PositiveNumber);
 }
 
 void add_render(Parser& parser) {

@@ -27,6 +27,7 @@ constexpr std::size_t kMaxFilterLength = 100;  ///< the library that reads regul
 struct BenchPlan {
   std::optional<std::filesystem::path> deck;  ///< absent: the sample
   std::vector<std::string_view> names;        ///< of the figures wanted
+  std::size_t patch_nodes = kBenchPatchDefault;
 };
 
 std::string all_names() {
@@ -56,7 +57,7 @@ bool is_there(const std::string& path) {
 
 /// Errors: wrong usage.
 Result<BenchPlan> plan_bench(const BenchOptions& options) {
-  BenchPlan plan{{}, bench_figure_names()};
+  BenchPlan plan{{}, bench_figure_names(), options.patch.value_or(kBenchPatchDefault)};
   std::optional<std::string> filter = options.filter;
   if (options.deck && !options.filter && !is_there(*options.deck))
     filter = options.deck;
@@ -92,7 +93,7 @@ Result<BenchReport> measure_shown(const std::filesystem::path& deck, const Bench
   MonotonicClock wall;
   ProcessCpuClock cpu;
   ProgressBar bar(context, "measuring", wall);
-  const BenchInput input{*opened, open_options(common), folder, plan.names};
+  const BenchInput input{*opened, open_options(common), folder, plan.patch_nodes, plan.names};
   if (Result<void> measured = measure_figures(input, {wall, cpu}, bar.progress(), report); !measured)
     return fail(kCommand, measured.error().message);
   return report;

@@ -24,7 +24,8 @@ struct BenchPatch {
   std::size_t shells = 0;                                      ///< that touch the nodes
   std::shared_ptr<const mesh::document::Generation> selected;  ///< the deck with the nodes selected; null: see `refusal`
   mesh::document::Lift lift;                                   ///< of the centre; far enough that shells get worse, where that is possible
-  std::string refusal;                                         ///< why no patch of this deck can be lifted; then only `centre` is set
+  mesh::Vec3 slide_by = mesh::Vec3::Zero();  ///< of the centre, deck's length unit: a tenth of the way to the farthest node
+  std::string refusal;                       ///< why no patch of this deck can be lifted; then only `centre` is set
 };
 
 /// What a figure's rate counts.

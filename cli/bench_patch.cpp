@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <string>
@@ -18,12 +19,13 @@ namespace {
 
 namespace document = mesh::document;
 
-constexpr std::array<std::size_t, 4> kPatchNodes{2500, 600, 150, 40};  ///< tried in this order, then half of a connected piece
+constexpr std::array<std::size_t, 3> kSmallerPatches{600, 150, 40};  ///< tried in this order, then half of a connected piece
 constexpr std::size_t kMaxPartsTried = 8;
 constexpr int kMaxRings = 400;
 /// How far the centre is lifted at most, in radii of the patch, and how many more shells should warn or fail then: enough for a repair to
 /// measure, and few enough to end soon, since each costs some milliseconds or more.
 constexpr double kMaxLift = 2;
+constexpr double kSlideShare = 0.1;  ///< of the patch's radius that the centre slides
 constexpr std::size_t kWantedDamaged = 20;
 constexpr int kBisections = 12;
 
@@ -134,9 +136,12 @@ Result<std::optional<BenchPatch>> try_patch(const document::Document& opened, me
   }
   patch.nodes = drag->nodes().size();
   patch.shells = drag->shells().size();
-  double radius = 0;
+  mesh::Vec3 to_farthest = mesh::Vec3::Zero();
   for (const mesh::NodeIndex node : drag->nodes())
-    radius = std::max(radius, (generation.model.position(node) - generation.model.position(centre)).norm());
+    if (const mesh::Vec3 to = generation.model.position(node) - generation.model.position(centre); to.norm() > to_farthest.norm())
+      to_farthest = to;
+  const double radius = to_farthest.norm();
+  patch.slide_by = kSlideShare * to_farthest;
   patch.lift.distance = damaging_distance(*drag, radius, generation.counts);
   if (const auto lifted = document::prepare(selected, patch.lift); !lifted) return fail(lifted.error());
   return std::optional(std::move(patch));
@@ -144,17 +149,19 @@ Result<std::optional<BenchPatch>> try_patch(const document::Document& opened, me
 
 }  // namespace
 
-Result<BenchPatch> find_bench_patch(const document::Document& opened, const Progress& progress) {
+Result<BenchPatch> find_bench_patch(const document::Document& opened, std::size_t wanted_nodes, const Progress& progress) {
   const std::vector<PartMiddle> middles = part_middles(opened.current().model);
   if (middles.empty()) return fail("", std::string(kNoShells));
   BenchPatch unliftable;
   unliftable.centre = middles.front().nearest;
-  std::vector<std::size_t> sizes(kPatchNodes.begin(), kPatchNodes.end());
+  std::vector<std::size_t> sizes{wanted_nodes};
+  std::copy_if(kSmallerPatches.begin(), kSmallerPatches.end(), std::back_inserter(sizes),
+               [&](std::size_t size) { return size < wanted_nodes; });
   sizes.push_back(0);
-  for (const std::size_t wanted_nodes : sizes)
+  for (const std::size_t size : sizes)
     for (const PartMiddle& middle : middles) {
       if (progress && !progress(0)) return fail(cancelled());
-      Result<std::optional<BenchPatch>> patch = try_patch(opened, middle.nearest, wanted_nodes, progress);
+      Result<std::optional<BenchPatch>> patch = try_patch(opened, middle.nearest, size, progress);
       if (patch && *patch) return std::move(**patch);
       if (!patch && unliftable.refusal.empty()) unliftable.refusal = patch.error().text();
     }

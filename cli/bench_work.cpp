@@ -3,16 +3,23 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <string>
 #include <system_error>
 #include <utility>
 
+#include <fcntl.h>
+#include <unistd.h>
+
+#include "base/file.h"
 #include "cli/bench_patch.h"
 #include "cli/measure.h"
+#include "ipc/wire/descriptor.h"
 #include "mesh/deck/data/deck.h"
 #include "mesh/document/damage.h"
 #include "mesh/document/drag.h"
 #include "mesh/document/prepare.h"
 #include "mesh/document/save.h"
+#include "mesh/document/selection.h"
 #include "mesh/report/check_figures.h"
 
 namespace prismesh::cli {
@@ -109,27 +116,56 @@ Result<Timing> measure_drag_begin(Bench& bench, BenchFigure& figure) {
   return measure(work, bench.stopwatches);
 }
 
-Result<Timing> measure_drag_step(Bench& bench, BenchFigure& figure) {
-  Result<document::Drag> drag = document::Drag::begin(bench.patch.selected, bench.patch.lift);
+Result<Timing> measure_steps(const Bench& bench, const document::Edit& edit, const document::Displacement& whole) {
+  Result<document::Drag> drag = document::Drag::begin(bench.patch.selected, edit);
   if (!drag) return fail(std::move(drag.error()));
   int step = 0;
   document::Displacement displacement;
   TimedWork work;
   work.prepare = [&] {
     step = step % kDragSteps + 1;
-    displacement.distance = bench.patch.lift.distance * step / kDragSteps;
+    const double share = static_cast<double>(step) / kDragSteps;
+    displacement = {whole.by * share, whole.distance * share, 0};
   };
   work.run = [&]() -> Result<void> {
     drag->step(displacement);
     return {};
   };
-  figure.size = bench.patch.shells;
   return measure(work, bench.stopwatches);
+}
+
+Result<Timing> measure_drag_step(Bench& bench, BenchFigure& figure) {
+  figure.size = bench.patch.shells;
+  return measure_steps(bench, bench.patch.lift, {mesh::Vec3::Zero(), bench.patch.lift.distance, 0});
+}
+
+Result<Timing> measure_slide_step(Bench& bench, BenchFigure& figure) {
+  figure.size = bench.patch.nodes;
+  document::Slide slide;
+  slide.shaping = bench.patch.lift.shaping;
+  return measure_steps(bench, slide, {bench.patch.slide_by, 0, 0});
 }
 
 Result<Timing> measure_lift(Bench& bench, BenchFigure& figure) {
   document::EditReport report;
   Result<Timing> timing = measure_on_copy(bench, bench.selected, bench.patch.lift, report);
+  figure.size = report.nodes_moved;
+  return timing;
+}
+
+/// An edit that names its nodes must follow what moves, not what is selected.
+Result<Timing> measure_lift_beside(Bench& bench, BenchFigure& figure) {
+  const mesh::Model& model = bench.input.opened.current().model;
+  document::Document all = bench.input.opened;
+  if (Result<document::EditReport> done = document::apply(all, document::Select{"all"}, bench.progress); !done)
+    return fail(std::move(done.error()));
+  std::string ids;
+  for (const mesh::NodeIndex node : document::selected_nodes(*bench.patch.selected))
+    ids += (ids.empty() ? "" : ",") + std::to_string(model.node_ids[node.value]);
+  document::Lift lift = bench.patch.lift;
+  lift.shaping.on = ids;
+  document::EditReport report;
+  Result<Timing> timing = measure_on_copy(bench, all, lift, report);
   figure.size = report.nodes_moved;
   return timing;
 }
@@ -151,6 +187,16 @@ Result<Timing> measure_relax(Bench& bench, BenchFigure& figure) {
   document::EditReport report;
   Result<Timing> timing = measure_on_copy(bench, bench.lifted, document::Relax{}, report);
   figure.size = bench.patch.nodes;
+  figure.note = note_of(report);
+  return timing;
+}
+
+Result<Timing> measure_relax_all(Bench& bench, BenchFigure& figure) {
+  document::Relax relax;
+  relax.scope = document::Scope::all;
+  document::EditReport report;
+  Result<Timing> timing = measure_on_copy(bench, bench.input.opened, relax, report);
+  figure.size = bench.input.opened.current().model.node_index->size();
   figure.note = note_of(report);
   return timing;
 }
@@ -186,6 +232,33 @@ Result<Timing> measure_save(Bench& bench, BenchFigure& figure) {
   return timing;
 }
 
+/// What saving has to be compared with.
+Result<Timing> measure_copy(Bench& bench, BenchFigure& figure) {
+  namespace fs = std::filesystem;
+  const fs::path folder = bench.input.save_folder / "copied";
+  std::error_code failed;
+  TimedWork work;
+  work.prepare = [&] {
+    fs::remove_all(folder, failed);
+    fs::create_directory(folder, failed);
+  };
+  work.run = [&]() -> Result<void> {
+    std::size_t number = 0;  // files of one name may lie in several folders
+    for (const mesh::deck::SourceFile& file : bench.input.opened.deck->files) {
+      const fs::path copy = folder / std::to_string(number++);
+      if (!fs::copy_file(file.path, copy, failed)) return fail(file.path.string(), "can't be copied: " + failed.message());
+      const ipc::Descriptor opened(::open(copy.c_str(), O_RDONLY | O_CLOEXEC));
+      if (opened.get() < 0 || ::fsync(opened.get()) != 0) return fail(copy.string(), "can't be flushed to disk");
+    }
+    return flush_folder(folder);
+  };
+  for (const mesh::deck::SourceFile& file : bench.input.opened.deck->files)
+    if (const std::uintmax_t bytes = fs::file_size(file.path, failed); !failed) figure.size += bytes;
+  Result<Timing> timing = measure(work, bench.stopwatches);
+  fs::remove_all(folder, failed);
+  return timing;
+}
+
 /// What has to be there before a figure can be measured.
 enum class Needs : std::uint8_t {
   deck,
@@ -202,23 +275,27 @@ struct FigureKind {
   Result<Timing> (*measure)(Bench&, BenchFigure&);
 };
 
-constexpr std::array<FigureKind, 10> kFigures{{
+constexpr std::array<FigureKind, 14> kFigures{{
     {"open", "read the deck, measure all shells", SizeUnit::bytes, Needs::deck, measure_open},
     {"quality", "all that check reports", SizeUnit::shells, Needs::deck, measure_quality},
     {"select_region", "a region up to its feature edges", SizeUnit::shells, Needs::centre, measure_select_region},
     {"drag_begin", "weights of the patch", SizeUnit::nodes, Needs::patch, measure_drag_begin},
     {"drag_step", "positions and quality of a preview", SizeUnit::shells, Needs::patch, measure_drag_step},
+    {"slide_step", "positions and quality as the patch slides", SizeUnit::nodes, Needs::patch, measure_slide_step},
     {"lift", "the patch, as an edit", SizeUnit::nodes, Needs::patch, measure_lift},
+    {"lift_beside", "the patch, named, with all nodes selected", SizeUnit::nodes, Needs::patch, measure_lift_beside},
     {"undo", "the lift", SizeUnit::nodes, Needs::patch, measure_undo},
     {"relax", "the lifted patch", SizeUnit::nodes, Needs::patch, measure_relax},
+    {"relax_all", "the whole deck as it was read", SizeUnit::nodes, Needs::centre, measure_relax_all},
     {"repair", "what the lift damaged", SizeUnit::shells, Needs::patch, measure_repair},
     {"save", "the lifted deck, flushed to disk", SizeUnit::bytes, Needs::patch_if_any, measure_save},
+    {"copy", "a copy of the deck's files, flushed to disk", SizeUnit::bytes, Needs::deck, measure_copy},
 }};
 
 /// The document with the patch selected, and with it lifted. Errors: cancelled.
 Result<void> prepare_patch(Bench& bench) {
   const document::Document& opened = bench.input.opened;
-  Result<BenchPatch> patch = find_bench_patch(opened, bench.progress);
+  Result<BenchPatch> patch = find_bench_patch(opened, bench.input.patch_nodes, bench.progress);
   if (!patch) {
     bench.patch.refusal = patch.error().text();
     return {};

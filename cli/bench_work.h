@@ -21,6 +21,7 @@ struct BenchInput {
   const mesh::document::Document& opened;  ///< the deck as `options` opens it; doesn't change
   mesh::document::OpenOptions options;     ///< for opening it again
   std::filesystem::path save_folder;       ///< a folder that exists; what is saved there is removed again before the next run
+  std::size_t patch_nodes;                 ///< of the patch that is lifted, about; where it fits, else a smaller one
   std::vector<std::string_view> names;     ///< figures to measure, in the order of bench_figure_names
 };
 

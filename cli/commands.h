@@ -136,10 +136,12 @@ struct SampleOptions {
 int sample(const SampleOptions& options, const Common& common, const Context& context);
 
 inline constexpr std::size_t kBenchShellsDefault = 100'000;
+inline constexpr std::size_t kBenchPatchDefault = 2'500;
 struct BenchOptions {
   std::optional<std::string> deck;      ///< a filter instead, where it is the only argument and no file has this name
   std::optional<std::string> filter;    ///< a regular expression: only figures in whose names it is found
   std::optional<std::size_t> elements;  ///< of the sample, without a deck
+  std::optional<std::size_t> patch;     ///< about how many nodes the patch has that is lifted
 };
 int bench(const BenchOptions& options, const Common& common, const Context& context);
 

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Measures what users wait for, at several sizes, appends the figures with machine and commit to a file, and draws the file as curves.
+"""Measures what users wait for, at several sizes of the model and of the change, appends the figures with machine and commit to a file, and draws the file as curves.
 
-    tests/bench/record.py [--programs build/bin] [--records docs/performance/records.jsonl] [--sizes 10000,100000,1000000] [--no-curves]
+    tests/bench/record.py [--programs build/bin] [--records docs/performance/records.jsonl] [--sizes 10000,100000,1000000,5000000]
+                          [--changes 100,1000,10000,100000] [--no-curves]
 
 `./station bench --record` builds what it needs and runs it. Processor time is compared over time, since it depends less on what else the
 machine does; the load that it had is noted.
@@ -40,6 +41,7 @@ OPENING = "open in prismesh-modeld with the first snapshot, 1M shells"
 GOALS = {row[0]: row[4] for row in ROWS} | {OPENING: 1000}
 PROGRAMS = sorted({row[1] for row in ROWS})
 CURVES = ["open", "quality", "save", "lift", "drag_step", "relax", "undo"]  # of `prismesh bench`
+CHANGE_CURVES = ["lift", "lift_beside", "drag_step", "slide_step", "relax", "undo"]  # of `prismesh bench`, in a model of a million shells
 COLOURS = ["#1b6ca8", "#c0392b", "#1e8449", "#8e44ad", "#b9770e", "#2c3e50", "#d81b60"]
 MILLISECONDS = {"ns": 1e-6, "us": 1e-3, "ms": 1, "s": 1e3}
 
@@ -59,7 +61,16 @@ def measure_row(programs, program, wanted, per):
     return {"wall_ms": result[0]["real_time"] * factor, "cpu_ms": result[0]["cpu_time"] * factor}
 
 
-def measure(programs, sizes):
+def bench(programs, figures, *options):
+    print("prismesh bench", *options, "..", file=sys.stderr, flush=True)
+    return json.loads(output_of([programs / "prismesh", "bench", "--json", *options, "|".join(f"^{name}$" for name in figures)]))
+
+
+def times_of(shown):
+    return {f["name"]: {"wall_ms": f["median_ms"], "cpu_ms": f["cpu_ms"]} for f in shown["figures"] if f["runs"]}
+
+
+def measure(programs, sizes, changes):
     record = {
         "date": datetime.date.today().isoformat(),
         "commit": output_of(["git", "rev-parse", "--short=12", "HEAD"]).strip(),
@@ -67,12 +78,15 @@ def measure(programs, sizes):
         "load_before": os.getloadavg()[0],
         "rows": {},
         "sizes": {},
+        "changes": {},
     }
     for size in sizes:
-        print(f"prismesh bench, {size} shells ..", file=sys.stderr, flush=True)
-        shown = json.loads(output_of([programs / "prismesh", "bench", "--json", "--elements", str(size), "|".join(f"^{name}$" for name in CURVES)]))
+        shown = bench(programs, CURVES, "--elements", str(size))
         record["processor"] = shown["processor"] or platform.machine()
-        record["sizes"][str(shown["shells"])] = {f["name"]: {"wall_ms": f["median_ms"], "cpu_ms": f["cpu_ms"]} for f in shown["figures"] if f["runs"]}
+        record["sizes"][str(shown["shells"])] = times_of(shown)
+    for change in changes:
+        shown = bench(programs, CHANGE_CURVES, "--elements", "1000000", "--patch", str(change))
+        record["changes"][str(shown["patch"]["nodes"])] = times_of(shown)
     for name, program, wanted, per, _ in ROWS:
         print(f"{name} ..", file=sys.stderr, flush=True)
         record["rows"][name] = measure_row(programs, program, wanted, per)
@@ -157,10 +171,10 @@ def tick_text(value):
     return f"{value:,.0f}" if value >= 1 else f"{value:g}"
 
 
-def curves_of(record):
-    """Processor time against the number of shells, both logarithmic."""
-    sizes = sorted((int(size), figures) for size, figures in record["sizes"].items())
-    lines = {name: [(size, figures[name]["cpu_ms"]) for size, figures in sizes if name in figures] for name in CURVES}
+def curves_of(times, names, below):
+    """Processor time against a size, both logarithmic."""
+    sizes = sorted((int(size), figures) for size, figures in times.items())
+    lines = {name: [(size, figures[name]["cpu_ms"]) for size, figures in sizes if name in figures] for name in names}
     lines = {name: points for name, points in lines.items() if points}
     x = Axis([size for size, _ in sizes], 80, 620)
     y = Axis([max(value, 1e-3) for points in lines.values() for _, value in points], 380, 30)
@@ -169,7 +183,7 @@ def curves_of(record):
         out.append(f'<path d="M{x.at(tick):.1f} 30V380" stroke="#dddddd"/><text x="{x.at(tick):.1f}" y="398" text-anchor="middle">{tick_text(tick)}</text>')
     for tick in y.ticks():
         out.append(f'<path d="M80 {y.at(tick):.1f}H620" stroke="#dddddd"/><text x="74" y="{y.at(tick) + 4:.1f}" text-anchor="end">{tick_text(tick)}</text>')
-    out.append('<text x="350" y="425" text-anchor="middle">shells</text><text x="18" y="205" text-anchor="middle" transform="rotate(-90 18 205)">processor time, ms</text>')
+    out.append(f'<text x="350" y="425" text-anchor="middle">{html.escape(below)}</text><text x="18" y="205" text-anchor="middle" transform="rotate(-90 18 205)">processor time, ms</text>')
     ends = []
     for (name, points), colour in zip(lines.items(), COLOURS):
         places = [(x.at(size), y.at(max(value, 1e-3))) for size, value in points]
@@ -187,20 +201,22 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--programs", type=pathlib.Path, default=pathlib.Path("build/bin"))
     parser.add_argument("--records", type=pathlib.Path, default=pathlib.Path("docs/performance/records.jsonl"))
-    parser.add_argument("--sizes", default="10000,100000,1000000")
+    parser.add_argument("--sizes", default="10000,100000,1000000,5000000")
+    parser.add_argument("--changes", default="100,1000,10000,100000", help="about how many nodes move, in a model of a million shells")
     parser.add_argument("--no-curves", action="store_true", help="only append the figures")
     options = parser.parse_args()
     for program in ["prismesh", "prismesh-modeld", *PROGRAMS]:
         if not os.access(options.programs / program, os.X_OK):
             sys.exit(f"{options.programs / program}: isn't built; ./station bench --record builds it")
-    record = measure(options.programs, [int(size) for size in options.sizes.split(",")])
+    record = measure(options.programs, *([int(size) for size in sizes.split(",")] for sizes in (options.sizes, options.changes)))
     options.records.parent.mkdir(parents=True, exist_ok=True)
     with open(options.records, "a") as records:
         records.write(json.dumps(record) + "\n")
     print(table_of(record))
     if not options.no_curves:
-        (options.records.parent / "size.svg").write_text(curves_of(record))
-        print(f"\nappended to {options.records}; curves in {options.records.parent / 'size.svg'}")
+        (options.records.parent / "size.svg").write_text(curves_of(record["sizes"], CURVES, "shells"))
+        (options.records.parent / "change.svg").write_text(curves_of(record["changes"], CHANGE_CURVES, "nodes that move, of a million"))
+        print(f"\nappended to {options.records}; curves in size.svg and change.svg beside it")
 
 
 if __name__ == "__main__":

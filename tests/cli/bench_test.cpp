@@ -12,8 +12,8 @@ namespace {
 
 using nlohmann::json;
 
-const std::vector<std::string> kAllFigures{"open", "quality", "select_region", "drag_begin", "drag_step",
-                                           "lift", "undo",    "relax",         "repair",     "save"};
+const std::vector<std::string> kAllFigures{"open",        "quality", "select_region", "drag_begin", "drag_step", "slide_step", "lift",
+                                           "lift_beside", "undo",    "relax",         "relax_all",  "repair",    "save",       "copy"};
 
 /// Works for as many milliseconds as the list says, run by run; the processor for a quarter of it.
 struct ManualWork {
@@ -141,11 +141,15 @@ TEST_F(BenchCommand, measures_every_figure_of_a_deck_and_leaves_it_as_it_is) {
   EXPECT_GT(bench["patch"]["shells"].get<int>(), 0);
   EXPECT_EQ(names_of(bench), kAllFigures);
   for (const json& each : bench["figures"]) {
-    EXPECT_TRUE(each["note"].is_null()) << each;
+    EXPECT_TRUE(each["note"].is_null() || each["name"] == "relax_all") << each;
     expect_measured(each);
   }
   EXPECT_EQ(figure(bench, "open")["bytes"], text.size());
+  EXPECT_EQ(figure(bench, "copy")["bytes"], text.size());
   EXPECT_EQ(figure(bench, "quality")["shells"], 24);
+  EXPECT_EQ(figure(bench, "relax_all")["nodes"], 35);
+  EXPECT_EQ(figure(bench, "relax_all")["note"], "nothing to relax: every node is where it is best") << "as the plate was read";
+  EXPECT_EQ(figure(bench, "lift_beside")["nodes"], figure(bench, "lift")["nodes"]) << "only the nodes that it names move";
   EXPECT_EQ(figure(bench, "select_region")["shells"], 24) << "a flat plate is one region";
   EXPECT_EQ(read(deck), text);
   EXPECT_EQ(names(), before);
@@ -237,6 +241,17 @@ TEST_F(BenchCommand, without_a_deck_the_sample_is_measured) {
   EXPECT_THAT(text.out, HasSubstr("\ngenerated sample: ls-dyna, "));
 }
 
+TEST_F(BenchCommand, the_patch_has_about_as_many_nodes_as_wanted_where_they_fit) {
+  const auto patch_of = [&](const char* nodes) {
+    const Outcome outcome = prismesh({"bench", "--elements", "20000", "--patch", nodes, "^lift$", "--json"});
+    EXPECT_EQ(outcome.status, kDone) << outcome.err;
+    return outcome.json()["patch"]["nodes"].get<int>();
+  };
+  EXPECT_NEAR(patch_of("50"), 50, 25) << "one ring more or less";
+  EXPECT_NEAR(patch_of("1000"), 1000, 130);
+  EXPECT_NEAR(patch_of("100000"), 600, 100) << "no part has so many: the next size that fits";
+}
+
 TEST_F(BenchCommand, wrong_usage_says_what_is_right) {
   const std::string deck = write("plate.k", plate_text());
   const std::pair<std::vector<std::string>, const char*> all[] = {
@@ -244,12 +259,13 @@ TEST_F(BenchCommand, wrong_usage_says_what_is_right) {
       {{"bench", deck, "("}, "no regular expression"},
       {{"bench", deck, std::string(500, '(')}, "more than 100 characters"},
       {{"bench", deck, "frames"},
-       "no figure matches \"frames\"; the figures are open, quality, select_region, drag_begin, drag_step, lift, "
-       "undo, relax, repair, save"},
+       "no figure matches \"frames\"; the figures are open, quality, select_region, drag_begin, drag_step, slide_step, lift, lift_beside, "
+       "undo, relax, relax_all, repair, save, copy"},
       {{"bench", path("absent.k")}, "there is no deck \""},
       {{"bench", "frames"}, "there is no deck \"frames\", and no figure matches \"frames\"; the figures are open, "},
       {{"bench", deck, "--elements", "5000"}, "--elements is the size of the sample"},
       {{"bench", "--elements", "1999"}, "2000"},
+      {{"bench", deck, "--patch", "0"}, "--patch"},
       {{"bench", deck, "open", "save"}, "save"},
       {{"bench", deck, "--frobnicate"}, "--frobnicate"},
   };
@@ -288,7 +304,8 @@ TEST_F(BenchCommand, what_a_deck_does_not_allow_is_said_on_its_line) {
   expect_measured(figure(bench, "open"));
   expect_measured(figure(bench, "save"));
   EXPECT_THAT(prismesh({"bench", beams, "save"}).out, HasSubstr("  the deck as it was read, flushed to disk\n"));
-  for (const char* name : {"quality", "select_region", "drag_begin", "drag_step", "lift", "undo", "relax", "repair"}) {
+  for (const char* name : {"quality", "select_region", "drag_begin", "drag_step", "slide_step", "lift", "lift_beside", "undo", "relax",
+                           "relax_all", "repair"}) {
     const json each = figure(bench, name);
     EXPECT_EQ(each["note"], "the deck has no shells") << name;
     EXPECT_EQ(each["runs"], 0);
