@@ -473,6 +473,37 @@ void add_remote(Parser& parser) {
   models_app->parse_complete_callback([o = options] { o->action = Action::models; });
 }
 
+void add_vault(Parser& parser) {
+  const auto [app, options] =
+      add_command<VaultOptions>(parser, "vault", "keep models in a store that speaks S3, and fetch them from there", vault);
+  app->require_subcommand(1);
+  app->add_option("--vault", options->vault,
+                  "s3+https://HOST[:PORT]/BUCKET[/FOLDER] (default: $PRISMESH_VAULT, else that of the file of keys)");
+  add_optional(app, "--credentials", options->credentials,
+               "the file of keys, which only you may read (default: vault.toml in ~/.config/prismesh; $AWS_ACCESS_KEY_ID and "
+               "$AWS_SECRET_ACCESS_KEY come first)");
+  app->add_flag("--plain-http", options->plain_http, "send without encryption to another computer too: all on the way can read the models");
+  app->add_option("--patience", options->patience_s, "how many seconds to try again when the store doesn't answer (default: 60)")
+      ->check(CLI::Range(1, 86400));
+  using Action = VaultOptions::Action;
+  const auto add = [app = app, o = options](const std::string& name, Action action, const std::string& what) {
+    CLI::App* command = app->add_subcommand(name, what);
+    command->fallthrough();
+    command->parse_complete_callback([o, action] { o->action = action; });
+    return command;
+  };
+  CLI::App* push_app = add("push", Action::push, "put a deck with its includes there; called again, it sends what is missing");
+  names_file(push_app->add_option("DECK", options->deck, "the deck's main file"))->required();
+  push_app->add_option("--name", options->name, "the model's name there (default: the main file's)");
+  push_app->add_flag("--resend", options->resend, "send also what is there: mends what `vault verify` names");
+  add("list", Action::list, "list the models that are there");
+  CLI::App* fetch_app = add("fetch", Action::fetch, "fetch a model; called again, it goes on where it stopped");
+  fetch_app->add_option("MODEL", options->model, "its name, its hash, or six digits or more of the hash's beginning")->required();
+  add_optional(fetch_app, "-o,--output", options->output, "the folder to make (default: named by main file and hash)");
+  add("verify", Action::verify, "read everything that is there again, and name what doesn't match its hash")
+      ->add_option("MODEL", options->model, "only this model, by name or hash (default: all)");
+}
+
 void add_intake(Parser& parser) {
   const auto [app, options] =
       add_command<IntakeOptions>(parser, "intake", "at a station: make pairing codes, list and revoke tokens", intake);
@@ -555,6 +586,7 @@ Result<Action> parse_arguments(std::span<const std::string> args) {
   add_render(*parser);
   add_session(*parser);
   add_remote(*parser);
+  add_vault(*parser);
   add_intake(*parser);
   add_devices(*parser);
   add_doctor(*parser);

@@ -211,6 +211,22 @@ struct WatchOptions {
 };
 int watch(const WatchOptions& options, const Common& common, const Context& context);
 
+/// Models in a store that speaks S3.
+struct VaultOptions {
+  enum class Action : std::uint8_t { push, list, fetch, verify };
+  Action action = Action::list;
+  std::string vault;                                 ///< its address; empty: that of the settings
+  std::optional<std::filesystem::path> credentials;  ///< a file of settings
+  bool plain_http = false;                           ///< also to another computer
+  int patience_s = 60;
+  std::filesystem::path deck;                   ///< push
+  std::string name;                             ///< push: of the model; empty: that of the main file
+  bool resend = false;                          ///< push: also what is there
+  std::string model;                            ///< fetch; verify, empty: all
+  std::optional<std::filesystem::path> output;  ///< fetch: a folder
+};
+int vault(const VaultOptions& options, const Common& common, const Context& context);
+
 /// The station's side: talks to a running prismesh-intake on this machine.
 struct IntakeOptions {
   enum class Action : std::uint8_t { code, tokens, revoke, describe };

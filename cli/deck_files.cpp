@@ -4,6 +4,9 @@
 #include <map>
 #include <system_error>
 
+#include "cli/open_deck.h"
+#include "cli/report_text.h"
+
 namespace prismesh::cli {
 
 namespace {
@@ -21,7 +24,7 @@ Result<DeckFiles> files_of(const mesh::deck::Deck& deck) {
   std::ptrdiff_t up = 0;
   for (const auto& [relative, path] : on_disk) {
     if (relative.is_absolute())
-      return fail(path.string(), "has an absolute name in the deck; a model at a station has its files beneath one folder");
+      return fail(path.string(), "has an absolute name in the deck; a stored model has its files beneath one folder");
     up = std::max(up, folders_up(relative));
   }
   std::error_code error;
@@ -36,6 +39,14 @@ Result<DeckFiles> files_of(const mesh::deck::Deck& deck) {
   for (const auto& [relative, path] : on_disk) found.files.push_back({path, (prefix / relative).lexically_normal().generic_string()});
   found.main = (prefix / deck.files.front().relative).lexically_normal().generic_string();
   return found;
+}
+
+Result<DeckFiles> files_of_deck(const fs::path& path, const Common& common, const Context& context) {
+  const Result<mesh::document::Document> document = open_deck(path, common, context);
+  if (!document) return fail(document.error());
+  for (const mesh::deck::Warning& warning : document->deck->warnings)
+    if (warning.kind == "missing-include") say(context, Error{warning.file, warning.line, warning.message});
+  return files_of(*document->deck);
 }
 
 }  // namespace prismesh::cli

@@ -1,7 +1,6 @@
 // What a user's computer does with stations: pair, push, pull, stations, watch.
 #include <array>
 #include <cstdlib>
-#include <ctime>
 #include <ostream>
 
 #include <unistd.h>
@@ -9,7 +8,6 @@
 #include "base/counted.h"
 #include "cli/commands.h"
 #include "cli/deck_files.h"
-#include "cli/open_deck.h"
 #include "cli/progress_bar.h"
 #include "cli/remote_json.h"
 #include "cli/report_text.h"
@@ -31,14 +29,6 @@ std::string own_name() {
   if (::gethostname(host.data(), host.size() - 1) != 0 || host[0] == 0) host = {'h', 'o', 's', 't'};
   const char* user = std::getenv("USER");
   return std::string(user != nullptr && *user != 0 ? user : "user") + "@" + host.data();
-}
-
-std::string day_and_time(std::int64_t seconds) {
-  const std::time_t time = static_cast<std::time_t>(seconds);
-  std::tm parts{};
-  std::array<char, 32> text{};
-  if (::gmtime_r(&time, &parts) == nullptr || std::strftime(text.data(), text.size(), "%Y-%m-%d %H:%M", &parts) == 0) return "?";
-  return text.data();
 }
 
 std::string listed_scopes(const std::vector<std::string>& scopes) {
@@ -124,14 +114,6 @@ int forget_station(const std::string& name, const Common& common, const Context&
   return kDone;
 }
 
-Result<DeckFiles> read_files(const PushOptions& options, const Common& common, const Context& context) {
-  const Result<mesh::document::Document> document = open_deck(options.deck, common, context);
-  if (!document) return fail(document.error());
-  for (const mesh::deck::Warning& warning : document->deck->warnings)
-    if (warning.kind == "missing-include") say(context, Error{warning.file, warning.line, warning.message});
-  return files_of(*document->deck);
-}
-
 }  // namespace
 
 int pair(const PairOptions& options, const Common& common, const Context& context) {
@@ -150,7 +132,7 @@ int push(const PushOptions& options, const Common& common, const Context& contex
   if (!book) return failed(context, book.error());
   const Result<remote::PairedStation> station = book->find(options.station);
   if (!station) return failed(context, station.error());
-  const Result<DeckFiles> files = read_files(options, common, context);
+  const Result<DeckFiles> files = files_of_deck(options.deck, common, context);
   if (!files) return failed(context, files.error());
   if (files->leaves_folder)
     say(context, Error{options.deck.string(), 0,

@@ -41,6 +41,14 @@ OrderedJson model_object(const remote::ListedModel& model) {
   return object;
 }
 
+OrderedJson vault_model_object(const ipc::store::ModelRecord& model) {
+  return {{"model", model.model.hex()},
+          {"name", printable(model.name)},
+          {"when_s", model.when_s},
+          {"bytes", model.bytes},
+          {"files", model.files}};
+}
+
 }  // namespace
 
 std::string paired_json(const remote::PairedStation& station) { return station_object(station).dump(); }
@@ -101,6 +109,44 @@ std::string tokens_json(const ipc::Tokens& tokens) {
     list.push_back(
         {{"name", printable(token.name)}, {"scopes", texts(token.scopes)}, {"made_s", token.made_s}, {"expires_s", token.expires_s}});
   return OrderedJson{{"tokens", std::move(list)}}.dump();
+}
+
+std::string vault_models_json(const std::string& vault, std::span<const ipc::store::ModelRecord> models) {
+  OrderedJson list = OrderedJson::array();
+  for (const ipc::store::ModelRecord& model : models) list.push_back(vault_model_object(model));
+  return OrderedJson{{"vault", printable(vault)}, {"models", std::move(list)}}.dump();
+}
+
+std::string vault_pushed_json(const std::string& vault, const ipc::vault::VaultPushed& pushed) {
+  OrderedJson object = vault_model_object(pushed.model);
+  object["vault"] = printable(vault);
+  object["was_there"] = pushed.was_there;
+  object["pieces"] = pushed.pieces;
+  object["sent_pieces"] = pushed.sent_pieces;
+  object["sent_bytes"] = pushed.sent_bytes;
+  return object.dump();
+}
+
+std::string vault_fetched_json(const std::string& vault, const ipc::vault::VaultFetched& fetched) {
+  OrderedJson object = vault_model_object(fetched.model);
+  object["vault"] = printable(vault);
+  object["folder"] = printable(fetched.folder.string());
+  object["main"] = printable(fetched.main.string());
+  object["received_bytes"] = fetched.received_bytes;
+  return object.dump();
+}
+
+std::string vault_verified_json(const std::string& vault, const ipc::vault::Verified& verified) {
+  OrderedJson faults = OrderedJson::array();
+  for (const ipc::vault::VaultFault& fault : verified.faults)
+    faults.push_back(
+        {{"model", fault.model.hex()}, {"file", printable(fault.file)}, {"object", fault.object}, {"fault", printable(fault.fault)}});
+  return OrderedJson{{"vault", printable(vault)},
+                     {"models", verified.models},
+                     {"objects", verified.objects},
+                     {"bytes", verified.bytes},
+                     {"faults", std::move(faults)}}
+      .dump();
 }
 
 }  // namespace prismesh::cli

@@ -1,4 +1,4 @@
-// The JSON of --json of the commands about stations; scripts rely on its fields. Inner to cli.
+// The JSON of --json of the commands about stations and vaults; scripts rely on its fields. Inner to cli.
 #pragma once
 
 #include <span>
@@ -9,6 +9,8 @@
 #include "ipc/remote/pull.h"
 #include "ipc/remote/push.h"
 #include "ipc/remote/station_book.h"
+#include "ipc/vault/fetch.h"
+#include "ipc/vault/push.h"
 
 namespace prismesh::cli {
 
@@ -24,5 +26,10 @@ std::string revoked_json(const std::string& name);
 std::string event_json(const std::string& kind, const std::string& model);
 std::string pairing_code_json(const ipc::MadePairingCode& made, const ipc::IntakeInfo& info);
 std::string tokens_json(const ipc::Tokens& tokens);
+
+std::string vault_models_json(const std::string& vault, std::span<const ipc::store::ModelRecord> models);
+std::string vault_pushed_json(const std::string& vault, const ipc::vault::VaultPushed& pushed);
+std::string vault_fetched_json(const std::string& vault, const ipc::vault::VaultFetched& fetched);
+std::string vault_verified_json(const std::string& vault, const ipc::vault::Verified& verified);
 
 }  // namespace prismesh::cli

@@ -86,6 +86,14 @@ bool output_is_good(const Context& context) {
   return false;
 }
 
+std::string day_and_time(std::int64_t seconds) {
+  const std::time_t time = static_cast<std::time_t>(seconds);
+  std::tm parts{};
+  std::array<char, 32> text{};
+  if (::gmtime_r(&time, &parts) == nullptr || std::strftime(text.data(), text.size(), "%Y-%m-%d %H:%M", &parts) == 0) return "?";
+  return text.data();
+}
+
 std::string change_words(const mesh::document::EditReport& report) {
   if (report.welded) return counted(report.welded->welds_added, "weld") + " added";
   if (report.bonded) return counted(report.bonded->solids_added, "solid") + " added";

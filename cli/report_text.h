@@ -1,6 +1,7 @@
 // Formats and prints what commands tell people. Inner to cli.
 #pragma once
 
+#include <cstdint>
 #include <iosfwd>
 #include <span>
 #include <string>
@@ -27,6 +28,9 @@ std::string criteria_names(const mesh::document::Document& document);
 
 /// A number with at most six digits: for measured lengths.
 std::string rounded(double value);
+
+/// "2026-11-28 17:30", of seconds since 1970, in UTC.
+std::string day_and_time(std::int64_t seconds);
 
 /// What an edit made: "3 nodes moved", "2 elements added, 1 element removed", "6 welds added".
 std::string change_words(const mesh::document::EditReport& report);

@@ -18,6 +18,8 @@
 #include <boost/beast/http/parser.hpp>
 #include <boost/beast/http/read.hpp>
 
+#include "base/progress.h"
+
 namespace prismesh::ipc::remote {
 
 namespace asio = boost::asio;

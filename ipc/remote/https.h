@@ -13,25 +13,14 @@
 #include <vector>
 
 #include "base/error.h"
-#include "base/progress.h"
 #include "ipc/remote/station_address.h"
 #include "ipc/store/sha256.h"
+#include "ipc/wire/line_fault.h"
 
 namespace prismesh::ipc::remote {
 
-/// Why a request had no answer.
-struct LineFault {
-  Error error;
-  bool may_pass = true;  ///< the line was cut, or nobody answers: trying again may help
-};
-template <class T>
-using LineResult = tl::expected<T, LineFault>;
-
 /// The beginning of the SHA-256 of the station's certificate: 10 bytes of a pairing code, 32 of a paired station.
 using Pin = std::vector<std::uint8_t>;
-
-/// Asked some ten times a second while the line waits. True: give up, with the error of work that was stopped.
-using Stop = std::function<bool()>;
 
 struct LinePatience {
   std::chrono::milliseconds connect{10'000};

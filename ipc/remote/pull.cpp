@@ -2,16 +2,13 @@
 
 #include <algorithm>
 #include <set>
-#include <system_error>
 #include <utility>
 
-#include <fcntl.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
+#include "ipc/store/choosing.h"
 #include "ipc/store/folder.h"
-#include "ipc/store/reading.h"
-#include "ipc/wire/server.h"
+#include "ipc/store/receiving.h"
 
 namespace prismesh::ipc::remote {
 
@@ -19,8 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMinDigits = 6;
-constexpr std::size_t kShownDigits = 12;
 constexpr std::size_t kPullHashPiece = std::size_t{4} << 20;
 constexpr const char* kUnfinished = ".pulling";
 
@@ -37,13 +32,6 @@ Result<store::Manifest> fetch_manifest(RemoteStation& remote, const store::Conte
   return manifest;
 }
 
-/// A folder's name out of the main file's.
-std::string usual_folder(const store::Manifest& manifest, const store::ContentHash& model) {
-  std::string stem = fs::path(manifest.main).filename().stem().string();
-  if (stem.empty() || stem.front() == '.' || stem.front() == '-') stem = "model";
-  return stem + "-" + model.hex().substr(0, 8);
-}
-
 class Pull {
  public:
   Pull(const PairedStation& station, const PullOptions& options)
@@ -54,13 +42,12 @@ class Pull {
     if (!model) return fail(model.error());
     const Result<store::Manifest> manifest = fetch_manifest(remote_, model->record.model);
     if (!manifest) return fail(manifest.error());
-    const fs::path folder = options_.folder.value_or(usual_folder(*manifest, model->record.model));
-    if (const Result<void> is_free = check_free(folder); !is_free) return fail(is_free.error());
-    fs::path unfinished = folder.has_filename() ? folder : folder.parent_path();
-    unfinished += kUnfinished;
+    const fs::path folder = options_.folder.value_or(store::usual_folder(*manifest, model->record.model));
+    const Result<store::Receiving> receiving = store::Receiving::begin(folder, kUnfinished);
+    if (!receiving) return fail(receiving.error());
     all_bytes_ = manifest->bytes();
-    if (const Result<void> fetched = fetch_all(*manifest, model->record.model, unfinished); !fetched) return fail(fetched.error());
-    if (const Result<void> laid_out = lay_out(*manifest, unfinished, folder); !laid_out) return fail(laid_out.error());
+    if (const Result<void> fetched = fetch_all(*manifest, model->record.model, *receiving); !fetched) return fail(fetched.error());
+    if (const Result<void> finished = receiving->finish(*manifest); !finished) return fail(finished.error());
     return Pulled{std::move(*model), folder, folder / manifest->main, received_bytes_};
   }
 
@@ -71,26 +58,14 @@ class Pull {
         std::min(1.0, static_cast<double>(done_bytes_ + of_this_file) / static_cast<double>(std::max<std::uint64_t>(1, all_bytes_)));
   }
 
-  static Result<void> check_free(const fs::path& folder) {
-    std::error_code error;
-    if (!fs::exists(fs::symlink_status(folder, error))) return {};
-    if (fs::is_directory(folder, error) && fs::is_empty(folder, error) && !error) return {};
-    return fail(folder.string(), "is there already; name another folder with -o");
-  }
-
   /// The files by their hashes, as a store has them: names of theirs come into play only when all is there.
-  Result<void> fetch_all(const store::Manifest& manifest, const store::ContentHash& model, const fs::path& unfinished) {
-    if (const Result<void> made = make_private_folder(unfinished, false); !made) return made;
-    const Result<store::Folder> root = store::Folder::open(unfinished);
-    if (!root) return fail(root.error());
-    const Result<store::Folder> content = root->make_folder(store::kContentFolder, 0700);
-    if (!content) return fail(content.error());
+  Result<void> fetch_all(const store::Manifest& manifest, const store::ContentHash& model, const store::Receiving& receiving) {
     std::set<store::ContentHash> known;
     for (const store::SetFile& file : manifest.files) {
       if (known.insert(file.hash).second) {
-        const Result<store::Folder> shard = content->make_folder(store::shard_of(file.hash), 0700);
-        if (!shard) return fail(shard.error());
-        if (const Result<void> fetched = fetch(file, model, *shard); !fetched) return fetched;
+        const Result<store::ReceivedFile> received = receiving.file(file.hash);
+        if (!received) return fail(received.error());
+        if (const Result<void> fetched = fetch(file, model, *received); !fetched) return fetched;
       }
       done_bytes_ += file.bytes;
     }
@@ -113,24 +88,21 @@ class Pull {
     return at;
   }
 
-  Result<void> fetch(const store::SetFile& file, const store::ContentHash& model, const store::Folder& shard) {
-    const std::string name = file.hash.hex();
-    const fs::path shown = shard.path() / name;
-    const bool is_begun = shard.has(name);
-    Result<Descriptor> disk = is_begun ? shard.read_and_write(name) : shard.create(name, 0600);
-    if (!disk) return fail(disk.error());
+  Result<void> fetch(const store::SetFile& file, const store::ContentHash& model, const store::ReceivedFile& received) {
+    const Descriptor& disk = received.disk;
+    const fs::path& shown = received.shown;
     store::Sha256 sum;
-    const Result<std::uint64_t> begun = hash_begun(*disk, shown, file.bytes, sum);
+    const Result<std::uint64_t> begun = hash_begun(disk, shown, file.bytes, sum);
     if (!begun) return fail(begun.error());
     std::uint64_t at = *begun;
     bool begins_anew = false;
     for (;;) {
-      if (::ftruncate(disk->get(), static_cast<off_t>(at)) != 0) return fail(shown.string(), "can't be written");
+      if (::ftruncate(disk.get(), static_cast<off_t>(at)) != 0) return fail(shown.string(), "can't be written");
       while (at < file.bytes)
-        if (const Result<void> some = fetch_rest(file, model, *disk, shown, at, sum); !some) return some;
+        if (const Result<void> some = fetch_rest(file, model, disk, shown, at, sum); !some) return some;
       if (sum.hash() == file.hash) return {};
       // What an earlier call left may have been changed; what this one fetched was not.
-      if (std::exchange(begins_anew, true) || !is_begun)
+      if (std::exchange(begins_anew, true) || !received.is_begun)
         return fail(remote_.station().name, "gives other bytes than the model has for " + file.path);
       at = 0;
       sum = store::Sha256();
@@ -166,24 +138,6 @@ class Pull {
     return {};
   }
 
-  static Result<void> lay_out(const store::Manifest& manifest, const fs::path& unfinished, const fs::path& folder) {
-    const Result<store::Reader> reader = store::Reader::open(unfinished);
-    if (!reader) return fail(reader.error());
-    const fs::path whole = unfinished / "whole";
-    std::error_code error;
-    fs::remove_all(whole, error);
-    fs::create_directory(whole, error);
-    if (error) return fail(whole.string(), "can't be made: " + error.message());
-    if (const Result<void> laid_out = reader->lay_out(manifest, whole); !laid_out) return laid_out;
-    fs::permissions(whole,
-                    fs::perms::owner_all | fs::perms::group_read | fs::perms::group_exec | fs::perms::others_read | fs::perms::others_exec,
-                    error);
-    fs::rename(whole, folder, error);
-    if (error) return fail(folder.string(), "can't be made: " + error.message());
-    fs::remove_all(unfinished, error);
-    return {};
-  }
-
   const PullOptions& options_;
   RemoteStation remote_;
   std::uint64_t all_bytes_ = 0, done_bytes_ = 0, received_bytes_ = 0;
@@ -195,15 +149,11 @@ class Pull {
 Result<ListedModel> find_model(RemoteStation& remote, const std::string& wanted) {
   Result<std::vector<ListedModel>> all = remote.models();
   if (!all) return fail(all.error());
-  const bool is_hash = wanted.size() >= kMinDigits && wanted.find_first_not_of("0123456789abcdef") == std::string::npos;
-  std::vector<ListedModel> found;
-  for (ListedModel& model : *all)
-    if (model.record.name == wanted || (is_hash && model.record.model.hex().starts_with(wanted))) found.push_back(std::move(model));
-  if (found.size() == 1) return std::move(found.front());
-  if (found.empty()) return fail(remote.station().name, "has no model '" + wanted + "'; `prismesh stations models` lists those there are");
-  std::string hashes;
-  for (const ListedModel& model : found) hashes += (hashes.empty() ? "" : ", ") + model.record.model.hex().substr(0, kShownDigits);
-  return fail(remote.station().name, "has several models '" + wanted + "'; say which by its hash: " + hashes);
+  std::vector<store::ModelRecord> records;
+  for (const ListedModel& model : *all) records.push_back(model.record);
+  const Result<std::size_t> chosen = store::choose_model(records, wanted, remote.station().name, "prismesh stations models");
+  if (!chosen) return fail(chosen.error());
+  return std::move((*all)[*chosen]);
 }
 
 Result<Pulled> pull(const PairedStation& station, const std::string& wanted, const PullOptions& options) {

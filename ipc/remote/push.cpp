@@ -2,15 +2,10 @@
 
 #include <algorithm>
 #include <charconv>
-#include <set>
 #include <utility>
-
-#include <fcntl.h>
-#include <sys/stat.h>
 
 #include "base/base64.h"
 #include "ipc/store/folder.h"
-#include "ipc/store/reading.h"
 
 namespace prismesh::ipc::remote {
 
@@ -18,25 +13,10 @@ namespace {
 
 constexpr std::size_t kMinChunk = std::size_t{64} << 10;
 constexpr double kHashingShare = 0.1;  ///< of the progress bar
-constexpr std::size_t kPushHashPiece = std::size_t{4} << 20;
 constexpr int kRoundsMax = 3;
 constexpr int kConflictsMax = 20;  // in a row: then the station contradicts itself
 
 std::string base64_of(std::string_view text) { return base64_encode(std::as_bytes(std::span(text.data(), text.size()))); }
-
-struct OpenFile {
-  Descriptor file;
-  std::uint64_t bytes = 0;
-};
-
-Result<OpenFile> open_local(const std::filesystem::path& path) {
-  OpenFile opened{Descriptor(::open(path.c_str(), O_RDONLY | O_CLOEXEC)), 0};
-  struct stat status {};
-  if (!opened.file || ::fstat(opened.file.get(), &status) != 0) return fail(path.string(), "can't be read");
-  if (!S_ISREG(status.st_mode)) return fail(path.string(), "is no file");
-  opened.bytes = static_cast<std::uint64_t>(status.st_size);
-  return opened;
-}
 
 /// A file to send.
 struct Sending {
@@ -51,14 +31,11 @@ class Push {
       : book_(book), options_(options), remote_(station, options.remote, [this] { return !told(); }) {}
 
   Result<Pushed> run(const std::vector<LocalFile>& files, const std::string& main) {
-    if (const Result<void> hashed = hash(files); !hashed) return fail(hashed.error());
-    manifest_.main = main;
-    std::sort(manifest_.files.begin(), manifest_.files.end(), [](const auto& a, const auto& b) { return a.path < b.path; });
-    const std::string text = store::encode_manifest(manifest_);
-    if (const Result<store::Manifest> sound = store::decode_manifest(text); !sound)
-      return fail(main, "can't be a model at a station: " + sound.error().message);
+    const Result<store::LocalSet> set = store::hash_local(files, main, [this] { return told(); });
+    if (!set) return fail(set.error());
+    note(set->contents);
     for (int round = 0; round < kRoundsMax; ++round) {
-      const Result<HttpsAnswer> answer = publish(text);
+      const Result<HttpsAnswer> answer = publish(set->text);
       if (!answer) return fail(answer.error());
       if (answer->status == 200 || answer->status == 201) return finish(answer->body, round == 0);
       if (answer->status != 409 || round + 1 == kRoundsMax) return fail(remote_.refusal(*answer, ""));
@@ -77,30 +54,13 @@ class Push {
     fraction_ = kHashingShare + (1 - kHashingShare) * std::min(1.0, static_cast<double>(done_bytes_ + of_this_file) / all);
   }
 
-  Result<void> hash(const std::vector<LocalFile>& files) {
-    std::set<store::ContentHash> known;
-    for (const LocalFile& file : files) {
-      const Result<OpenFile> opened = open_local(file.disk);
-      if (!opened) return fail(opened.error());
-      store::Sha256 sum;
-      std::string piece(kPushHashPiece, '\0');
-      std::uint64_t at = 0;
-      for (;;) {
-        const Result<std::size_t> got = store::read_at(opened->file, piece.data(), piece.size(), at, file.disk);
-        if (!got) return fail(got.error());
-        if (!told()) return fail(cancelled());
-        sum.add(std::string_view(piece.data(), *got));
-        at += *got;
-        if (*got < piece.size()) break;
-      }
-      manifest_.files.push_back({sum.hash(), at, file.path});
-      if (!known.insert(sum.hash()).second) continue;
-      const PairedStation& station = remote_.station();
-      sending_.push_back({file.disk, manifest_.files.back(),
-                          store::sha256(station.fingerprint.hex() + " " + station.token_name + " " + sum.hash().hex())});
-      all_bytes_ += at;
+  void note(const std::vector<store::LocalContent>& contents) {
+    const PairedStation& station = remote_.station();
+    for (const store::LocalContent& content : contents) {
+      sending_.push_back(
+          {content.disk, content.is, store::sha256(station.fingerprint.hex() + " " + station.token_name + " " + content.is.hash.hex())});
+      all_bytes_ += content.is.bytes;
     }
-    return {};
   }
 
   Result<HttpsAnswer> publish(const std::string& text) {
@@ -203,7 +163,7 @@ class Push {
   }
 
   Result<void> send(const Sending& file) {
-    const Result<OpenFile> opened = open_local(file.disk);
+    const Result<store::OpenedFile> opened = store::open_local(file.disk);
     if (!opened) return fail(opened.error());
     std::optional<std::string> upload = book_.upload(file.key);
     if (upload && !is_upload_path(*upload)) upload.reset();
@@ -242,7 +202,6 @@ class Push {
   const StationBook& book_;
   const PushOptions& options_;
   RemoteStation remote_;
-  store::Manifest manifest_;
   std::vector<Sending> sending_;
   std::uint64_t all_bytes_ = 0, done_bytes_ = 0, sent_bytes_ = 0;
   std::size_t chunk_bytes_ = options_.chunk_bytes;  ///< a line that is always cut carries smaller chunks only; a chunk counts whole or not

@@ -8,15 +8,11 @@
 
 #include "base/progress.h"
 #include "ipc/remote/remote_station.h"
-#include "ipc/store/manifest.h"
+#include "ipc/store/local_files.h"
 
 namespace prismesh::ipc::remote {
 
-/// A file of a model and where it lies here.
-struct LocalFile {
-  std::filesystem::path disk;
-  std::string path;  ///< in the model
-};
+using store::LocalFile;
 
 struct PushOptions {
   RemoteOptions remote;

@@ -1,7 +1,6 @@
 #include "ipc/remote/remote_station.h"
 
 #include <algorithm>
-#include <thread>
 #include <utility>
 
 #include "base/json/write.h"
@@ -11,19 +10,7 @@ namespace prismesh::ipc::remote {
 
 namespace {
 
-constexpr std::chrono::milliseconds kPauseMax{5000};
-constexpr std::chrono::milliseconds kPauseTurn{50};
 constexpr std::size_t kListedAtOnce = 1000;
-
-/// Waits, unless it is stopped meanwhile.
-bool paused(std::chrono::milliseconds pause, const Stop& stop) {
-  const auto end = std::chrono::steady_clock::now() + pause;
-  while (std::chrono::steady_clock::now() < end) {
-    if (stop && stop()) return false;
-    std::this_thread::sleep_for(std::min(kPauseTurn, pause));
-  }
-  return true;
-}
 
 }  // namespace
 
@@ -54,7 +41,7 @@ Result<PairedStation> pair(const StationAddress& address, std::string_view code,
 }
 
 RemoteStation::RemoteStation(PairedStation station, RemoteOptions options, Stop stop)
-    : station_(std::move(station)), options_(options), stop_(std::move(stop)), pause_(options.first_pause) {}
+    : station_(std::move(station)), options_(options), stop_(stop), retrying_({options.patience, options.first_pause}, std::move(stop)) {}
 
 LineResult<HttpsAnswer> RemoteStation::ask_once(HttpsRequest request, const BodySink& sink,
                                                 const std::function<void(std::uint64_t)>& sent) {
@@ -74,20 +61,6 @@ LineResult<HttpsAnswer> RemoteStation::ask_once(HttpsRequest request, const Body
   if (answer->status == 429 || answer->status == 503) return tl::unexpected(LineFault{refusal(*answer, ""), true});
   line_is_good();
   return answer;
-}
-
-void RemoteStation::line_is_good() {
-  cut_since_.reset();
-  pause_ = options_.first_pause;
-}
-
-Result<void> RemoteStation::wait_after(const LineFault& fault) {
-  if (!fault.may_pass) return fail(fault.error);
-  const auto now = std::chrono::steady_clock::now();
-  if (!cut_since_) cut_since_ = now;
-  if (now - *cut_since_ + pause_ > options_.patience) return fail(fault.error);
-  if (!paused(std::exchange(pause_, std::min(2 * pause_, kPauseMax)), stop_)) return fail(cancelled());
-  return {};
 }
 
 Result<HttpsAnswer> RemoteStation::ask(const HttpsRequest& request) {

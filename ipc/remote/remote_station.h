@@ -11,6 +11,7 @@
 #include "ipc/remote/answers.h"
 #include "ipc/remote/https.h"
 #include "ipc/remote/station_book.h"
+#include "ipc/wire/retrying.h"
 
 namespace prismesh::ipc::remote {
 
@@ -36,10 +37,10 @@ class RemoteStation {
   /// As often as needed: only for requests that may come twice. Errors: a fault that doesn't pass, or for longer than the patience.
   Result<HttpsAnswer> ask(const HttpsRequest& request);
   /// Waits before another try. Errors: `fault` doesn't pass, the patience is over, the user stopped it.
-  Result<void> wait_after(const LineFault& fault);
+  Result<void> wait_after(const LineFault& fault) { return retrying_.wait_after(fault); }
   /// An answer that goes on for long has begun: what follows is another cut.
-  void line_is_good();
-  bool is_stopped() const { return stop_ && stop_(); }
+  void line_is_good() { retrying_.line_is_good(); }
+  bool is_stopped() const { return retrying_.is_stopped(); }
 
   /// What the answer's status says, as a sentence that says what to do. `about`: what was asked for.
   Error refusal(const HttpsAnswer& answer, const std::string& about) const;
@@ -52,8 +53,7 @@ class RemoteStation {
   RemoteOptions options_;
   Stop stop_;
   std::optional<HttpsLine> line_;
-  std::optional<std::chrono::steady_clock::time_point> cut_since_;
-  std::chrono::milliseconds pause_;
+  Retrying retrying_;
 };
 
 }  // namespace prismesh::ipc::remote

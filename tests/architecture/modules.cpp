@@ -65,6 +65,7 @@ const std::vector<Module>& modules() {
       {"ipc/store", {"ipc/wire"}},
       {"ipc/intake", {"ipc/wire"}},
       {"ipc/remote", {"ipc/intake", "ipc/store"}},
+      {"ipc/vault", {"ipc/store"}},
 
       {"daemon/common", {"ipc/wire"}},
       {"daemon/import", {"ipc/import", "daemon/common"}},
@@ -119,7 +120,7 @@ const std::vector<Module>& modules() {
         "kiosk/tools/parts",     "kiosk/tools/history", "kiosk/tools/view",       "kiosk/calibration",      "kiosk/display/kms",
         "kiosk/display/x11",     "drivers/settings"}},
 
-      {"cli", {"ipc/device", "ipc/import", "ipc/model", "ipc/pen", "ipc/remote", "mesh/batch", "mesh/measure", "drivers/settings"}},
+      {"cli", {"ipc/device", "ipc/import", "ipc/model", "ipc/pen", "ipc/remote", "ipc/vault", "mesh/batch", "mesh/measure", "drivers/settings"}},
       {"python", {"mesh/report"}},
   };
   return kModules;

@@ -1,0 +1,103 @@
+#include "ipc/vault/objects.h"
+
+#include <array>
+#include <charconv>
+
+#include "ipc/store/utf8.h"
+
+namespace prismesh::ipc::vault {
+
+namespace {
+
+constexpr std::string_view kPieces = "pieces/", kLists = "lists/";
+constexpr std::string_view kListLine = "prismesh-pieces 1\n";
+constexpr std::size_t kHashDigits = 64;
+
+std::string hex_of(std::string_view text) {
+  constexpr std::string_view kHexDigits = "0123456789abcdef";
+  std::string digits;
+  for (const char c : text) {
+    digits += kHexDigits[static_cast<unsigned char>(c) >> 4];
+    digits += kHexDigits[static_cast<unsigned char>(c) & 15];
+  }
+  return digits;
+}
+
+std::optional<std::string> text_of_hex(std::string_view digits) {
+  std::string text;
+  if (digits.size() % 2 != 0) return std::nullopt;
+  for (std::size_t i = 0; i < digits.size(); i += 2) {
+    unsigned value = 0;
+    const auto [end, failed] = std::from_chars(digits.data() + i, digits.data() + i + 2, value, 16);
+    if (failed != std::errc{} || end != digits.data() + i + 2) return std::nullopt;
+    text += static_cast<char>(value);
+  }
+  return text;
+}
+
+/// A number that ends at the next `-`, which is taken off too.
+template <class T>
+bool take_number(std::string_view& text, T& number) {
+  const std::size_t end = text.find('-');
+  if (end == std::string_view::npos) return false;
+  const auto [stop, failed] = std::from_chars(text.data(), text.data() + end, number);
+  if (failed != std::errc{} || stop != text.data() + end) return false;
+  text.remove_prefix(end + 1);
+  return true;
+}
+
+}  // namespace
+
+std::string piece_object(const store::ContentHash& piece) { return std::string(kPieces) + piece.hex(); }
+std::string list_object(const store::ContentHash& file) { return std::string(kLists) + file.hex(); }
+std::string model_object(const store::ContentHash& model) { return std::string(kModels) + model.hex(); }
+
+std::optional<store::ContentHash> model_of_object(std::string_view object) {
+  if (!object.starts_with(kModels)) return std::nullopt;
+  return store::parse_content_hash(object.substr(kModels.size()));
+}
+
+std::string name_object(const store::ModelRecord& record) {
+  return std::string(kNames) + record.model.hex() + "/" + std::to_string(record.when_s) + "-" + std::to_string(record.bytes) + "-" +
+         std::to_string(record.files) + "-" + hex_of(record.name);
+}
+
+std::optional<store::ModelRecord> record_of_object(std::string_view object) {
+  const std::string_view whole = object;
+  store::ModelRecord record;
+  if (!object.starts_with(kNames)) return std::nullopt;
+  object.remove_prefix(kNames.size());
+  const auto model = store::parse_content_hash(object.substr(0, kHashDigits));
+  if (!model || object.size() <= kHashDigits || object[kHashDigits] != '/') return std::nullopt;
+  record.model = *model;
+  object.remove_prefix(kHashDigits + 1);
+  if (!take_number(object, record.when_s) || !take_number(object, record.bytes) || !take_number(object, record.files)) return std::nullopt;
+  const std::optional<std::string> name = text_of_hex(object);
+  if (!name || name->empty() || name->size() > store::kMaxNameBytes || !store::is_plain_utf8(*name)) return std::nullopt;
+  record.name = *name;
+  return name_object(record) == whole ? std::optional(record) : std::nullopt;
+}
+
+std::uint64_t piece_count(std::uint64_t file_bytes) { return file_bytes / kPieceBytes + (file_bytes % kPieceBytes != 0 ? 1 : 0); }
+
+std::string encode_pieces(std::span<const store::ContentHash> pieces) {
+  std::string text(kListLine);
+  for (const store::ContentHash& piece : pieces) text += piece.hex() + "\n";
+  return text;
+}
+
+Result<std::vector<store::ContentHash>> decode_pieces(std::string_view text, std::uint64_t file_bytes) {
+  std::vector<store::ContentHash> pieces;
+  const std::uint64_t count = piece_count(file_bytes);
+  const bool has_size = text.starts_with(kListLine) && (text.size() - kListLine.size()) / (kHashDigits + 1) == count &&
+                        (text.size() - kListLine.size()) % (kHashDigits + 1) == 0;
+  if (!has_size) return fail("", "the list of its pieces isn't one of " + std::to_string(count));
+  for (std::size_t at = kListLine.size(); at < text.size(); at += kHashDigits + 1) {
+    const auto piece = store::parse_content_hash(text.substr(at, kHashDigits));
+    if (!piece || text[at + kHashDigits] != '\n') return fail("", "the list of its pieces has a line that is no hash");
+    pieces.push_back(*piece);
+  }
+  return pieces;
+}
+
+}  // namespace prismesh::ipc::vault

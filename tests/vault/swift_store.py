@@ -1,0 +1,162 @@
+"""OpenStack Swift on this host: its proxy with the S3 API and tempauth, its account, container and object servers, with a folder and ports of their own.
+
+Needs Debian's python3-swift, whose code the packages swift-proxy, swift-account, swift-container and swift-object start; no root, no memcached and
+no service of the machine. Nothing of it is left when it ends.
+"""
+import os
+import pathlib
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+
+PYTHON = "/usr/bin/python3"  # Debian's, which has its packages
+ACCESS_KEY = "test:tester"
+SECRET_KEY = "testing"
+REGION = "us-east-1"
+PATIENCE_S = 60
+
+SERVERS = ("account", "container", "object")
+# The programs swift-proxy-server and so on are these lines, but for the folder of swift.conf.
+START = """
+import sys
+from swift.common import utils
+utils.set_swift_dir(sys.argv[1])
+from swift.common.wsgi import run_wsgi
+sys.exit(run_wsgi(f"{sys.argv[1]}/{sys.argv[2]}.conf", sys.argv[2]))
+"""
+MAKE_RINGS = """
+import sys
+from swift.common.ring import RingBuilder
+folder, ports = sys.argv[1], dict(zip(("account", "container", "object"), map(int, sys.argv[2:])))
+for server, port in ports.items():
+    ring = RingBuilder(2, 1, 0)
+    ring.add_dev({"region": 1, "zone": 1, "ip": "127.0.0.1", "port": port, "device": "disk", "weight": 1, "meta": ""})
+    ring.rebalance()
+    ring.get_ring().save(f"{folder}/{server}.ring.gz")
+"""
+PROXY = """[DEFAULT]
+bind_ip = 127.0.0.1
+bind_port = {port}
+workers = 0
+user = {user}
+swift_dir = {folder}
+log_address = {folder}/no-log
+[pipeline:main]
+pipeline = cache s3api tempauth proxy-server
+[app:proxy-server]
+use = egg:swift#proxy
+allow_account_management = true
+account_autocreate = true
+node_timeout = 20
+[filter:cache]
+use = egg:swift#memcache
+memcache_servers = 127.0.0.1:1
+[filter:s3api]
+use = egg:swift#s3api
+location = {region}
+[filter:tempauth]
+use = egg:swift#tempauth
+user_test_tester = {secret} .admin
+"""
+STORAGE = """[DEFAULT]
+bind_ip = 127.0.0.1
+bind_port = {port}
+workers = 0
+user = {user}
+swift_dir = {folder}
+devices = {folder}/devices
+mount_check = false
+disable_fallocate = true
+log_address = {folder}/no-log
+[pipeline:main]
+pipeline = {server}-server
+[app:{server}-server]
+use = egg:swift#{server}
+"""
+
+
+def missing():
+    """Why there can be no Swift here; empty: there can."""
+    if not os.path.exists(PYTHON) or subprocess.run([PYTHON, "-c", "import swift.common.middleware.s3api"], capture_output=True).returncode:
+        return "not installed: python3-swift"
+    with tempfile.NamedTemporaryFile() as file:
+        try:
+            os.setxattr(file.name, "user.swift.metadata", b"1")
+        except OSError:
+            return f"the file system of {tempfile.gettempdir()} keeps no extended attributes"
+    return ""
+
+
+def free_ports(count):
+    sockets = [socket.socket() for _ in range(count)]
+    for each in sockets:
+        each.bind(("127.0.0.1", 0))
+    ports = [each.getsockname()[1] for each in sockets]
+    for each in sockets:
+        each.close()
+    return ports
+
+
+class SwiftStore:
+    def __init__(self, folder):
+        self.folder = pathlib.Path(folder)
+        self.servers = {}
+        self.port, *self.inner = free_ports(1 + len(SERVERS))
+
+    def __enter__(self):
+        try:
+            (self.folder / "devices" / "disk").mkdir(parents=True)
+            (self.folder / "swift.conf").write_text("[swift-hash]\nswift_hash_path_suffix = prismesh\n[storage-policy:0]\nname = one\ndefault = yes\n")
+            subprocess.run([PYTHON, "-c", MAKE_RINGS, self.folder, *map(str, self.inner)], check=True, capture_output=True)
+            user = subprocess.run(["id", "-un"], capture_output=True, text=True, check=True).stdout.strip()
+            for server, port in zip(SERVERS, self.inner):
+                self.start(server, STORAGE.format(server=server, port=port, folder=self.folder, user=user))
+            self.start("proxy", PROXY.format(port=self.port, folder=self.folder, user=user, secret=SECRET_KEY, region=REGION))
+            for port in (*self.inner, self.port):
+                self.until_it_listens(port)
+        except BaseException:
+            self.__exit__()
+            raise
+        return self
+
+    def __exit__(self, *_):
+        for server in self.servers.values():
+            server.send_signal(signal.SIGTERM)
+        for server in self.servers.values():
+            try:
+                server.wait(10)
+            except subprocess.TimeoutExpired:
+                server.kill()
+                server.wait()
+
+    def start(self, name, conf):
+        (self.folder / f"{name}-server.conf").write_text(conf)
+        with open(self.folder / f"{name}.out", "ab") as log:
+            self.servers[name] = subprocess.Popen([PYTHON, "-c", START, str(self.folder), f"{name}-server"], stdin=subprocess.DEVNULL, stdout=log, stderr=log)
+
+    def until_it_listens(self, port):
+        end = time.monotonic() + PATIENCE_S
+        while True:
+            try:
+                socket.create_connection(("127.0.0.1", port), 1).close()
+                return
+            except OSError:
+                for name, server in self.servers.items():
+                    if server.poll() is not None:
+                        raise RuntimeError(f"{name} has ended: {self.logs()}") from None
+                if time.monotonic() > end:
+                    raise RuntimeError(f"a server of Swift doesn't listen: {self.logs()}") from None
+                time.sleep(0.05)
+
+    def logs(self):
+        return "\n".join(f"--- {path.name}\n" + path.read_text(errors="replace")[-1500:] for path in sorted(self.folder.glob("*.out")))
+
+
+if __name__ == "__main__":
+    with tempfile.TemporaryDirectory() as place, SwiftStore(place) as store:
+        print(store.port, flush=True)
+        sys.stdin.readline()
+        print(store.logs())
