@@ -16,11 +16,12 @@ image_without="sound drivers/media drivers/infiniband drivers/staging drivers/ii
 # build_base FOLDER: a Debian 12 without our packages, as FOLDER/base.tar. Kept for a week.
 build_base() {
   local folder=$1 list without=() each
-  [ -z "$(find "$folder/base.tar" -mtime -7 2>/dev/null)" ] || { [ packages.txt -nt "$folder/base.tar" ] || return 0; }
+  [ -z "$(find "$folder/base.tar" -mtime -7 2>/dev/null)" ] || { [ packages.txt -nt "$folder/base.tar" ] || [ scripts/image/users.conf -nt "$folder/base.tar" ] || return 0; }
   say "Collecting Debian's packages"
   for each in $image_without; do without+=(--dpkgopt="path-exclude=/lib/modules/*/kernel/$each/*"); done
   list=$(packages run image image-and-disks | paste -sd,)
-  SOURCE_DATE_EPOCH=$image_time mmdebstrap --variant=minbase --mode=root --components=main --include="$list" --aptopt='APT::Install-Recommends "false"' \
+  SOURCE_DATE_EPOCH=$image_time mmdebstrap --variant=minbase --mode=root --components=main --include="$list" \
+    --essential-hook='systemd-sysusers --root="$1" scripts/image/users.conf' --aptopt='APT::Install-Recommends "false"' \
     --dpkgopt='path-exclude=/usr/share/man/*' --dpkgopt='path-exclude=/usr/share/locale/*' --dpkgopt='path-exclude=/usr/share/doc/*' \
     --dpkgopt='path-include=/usr/share/doc/*/copyright' "${without[@]}" bookworm "$folder/new.tar" 2>"$folder/base.log" ||
     { tail -20 "$folder/base.log" >&2; give_up "Debian's packages couldn't be collected; all that was said is in $folder/base.log"; }

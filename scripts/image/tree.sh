@@ -27,6 +27,7 @@ rm -rf "$root/tmp/packages" "$root/usr/sbin/policy-rc.d"
 
 cp -a --no-preserve=ownership "$here/root/." "$root/"
 install -m 644 "$keys/update-ca.crt" "$root/etc/rauc/keyring.pem"
+cp "$here/root/etc/nftables.conf" "$root/usr/lib/prismesh/nftables.conf" # what stays in force when a site's own has a fault
 sed -i '/^IMAGE_/d' "$root/usr/lib/os-release"
 printf 'IMAGE_ID=prismesh\nIMAGE_VERSION=%s\n' "$version" >>"$root/usr/lib/os-release"
 mkdir -p "$root/data" "$root/etc/prismesh/ssh"
@@ -35,7 +36,7 @@ chroot "$root" passwd --quiet --lock root
 # --- what runs ---
 units() { chroot "$root" systemctl --quiet "$@"; }
 units enable prismesh.target seatd.service nftables.service systemd-networkd.service systemd-timesyncd.service \
-  tmp.mount prismesh-identity.service prismesh-lockdown.service prismesh-ssh.service prismesh-notice.service prismesh-update-confirm.service
+  tmp.mount prismesh-identity.service prismesh-network.service prismesh-lockdown.service prismesh-ssh.service prismesh-notice.service prismesh-update-confirm.service
 units set-default graphical.target
 # Logins and shells, what would write to the disk, and what waits for something that a station hasn't.
 units mask getty.target getty@.service autovt@.service serial-getty@.service console-getty.service container-getty@.service debug-shell.service \

@@ -4,7 +4,7 @@ ends with status 1 if there is one.
 
 The list (scripts/image/allowed.txt) has a section for each kind of right; a line is what is allowed, after # why. What the image has beyond it
 is a fault. So is what the list names and the image no longer has: a list that says too much hides the next fault. Reads files only, so it
-works on any tree, and as any user who can read it."""
+works on any tree, and as any user who can read it. users.conf beside the list has the numbers of users and groups."""
 import os
 import pathlib
 import re
@@ -221,13 +221,42 @@ def firewall(tree):
         yield "nftables.conf doesn't drop what it doesn't name"
     if "nftables.service" not in tree.wanted():
         yield "nftables.service doesn't start with the machine"
+    if not re.search(r"^Requires=(.* )?nftables\.service", tree.unit("systemd-networkd.service") or "", re.M):
+        yield "systemd-networkd.service doesn't require nftables.service: without a firewall the network comes up"
     ports = set(re.findall(r"\d+", " ".join(re.findall(r"elements = \{([^}]*)\}", text)))) | set(re.findall(r"(?:tcp|udp) dport (\d+)", text))
     for port in sorted(ports - {"7443", "5353", "68", "546"}, key=int):
         yield f"nftables.conf opens port {port}"
 
 
-def audit(root, allowed):
-    """Returns the faults, a sentence each."""
+def read_numbers(path):
+    """The numbers of users and groups that a file in the form of sysusers.d names."""
+    numbers = {"user": {}, "group": {}}
+    for line in pathlib.Path(path).read_text().splitlines():
+        words = line.split()
+        if not words or words[0] not in ("u", "g"):
+            continue
+        number, _, group = words[2].partition(":")
+        if words[0] == "u":
+            numbers["user"][words[1]] = number
+        if not group:
+            numbers["group"][words[1]] = number
+    return numbers
+
+
+def numbers_of(tree, numbers):
+    """Files on the data partition belong to numbers, so a version must not give a number to somebody else."""
+    for kind, path in (("user", "etc/passwd"), ("group", "etc/group")):
+        found = {name: number for name, _, number, *_ in (line.split(":") for line in tree.text(path).splitlines() if line.count(":") > 2 or kind == "group")}
+        for name, number in found.items():
+            if name in numbers[kind] and number != numbers[kind][name]:
+                yield f"the {kind} {name} has the number {number}, not {numbers[kind][name]}: its files on the data partition would be somebody else's"
+            elif name not in numbers[kind] and 100 <= int(number) < 60000:
+                yield f"the {kind} {name} has no number in users.conf: it may be another in the next version"
+        yield from (f"users.conf has the {kind} {name}, whom the image doesn't have" for name in numbers[kind] if name not in found)
+
+
+def audit(root, allowed, numbers=None):
+    """Returns the faults, a sentence each. numbers: of read_numbers, if they are to be the same."""
     tree, faults = Tree(root), []
     used = {kind: set() for kind in KINDS}
 
@@ -258,6 +287,8 @@ def audit(root, allowed):
             faults.append(f"module: {line} isn't blocked")
     for title, found in (("password", passwords), ("identity", identity), ("login", logins), ("firewall", firewall)):
         faults += [f"{title}: {sentence}" for sentence in found(tree)]
+    if numbers:
+        faults += [f"number: {sentence}" for sentence in numbers_of(tree, numbers)]
     for kind in KINDS:
         faults += [f"{kind}: the list allows '{key}', which the image doesn't have" for key in allowed[kind] if key not in used[kind]]
     return faults
@@ -267,7 +298,7 @@ def main():
     if len(sys.argv) != 3:
         print("usage: audit.py TREE LIST", file=sys.stderr)
         return 2
-    faults = audit(sys.argv[1], read_list(sys.argv[2]))
+    faults = audit(sys.argv[1], read_list(sys.argv[2]), read_numbers(pathlib.Path(sys.argv[2]).with_name("users.conf")))
     for fault in faults:
         print(fault)
     print(f"{sys.argv[1]}: {len(faults)} faults" if faults else f"{sys.argv[1]}: the image has what the list allows, and nothing else")

@@ -53,6 +53,8 @@ class Audit(unittest.TestCase):
         self.write("etc/modprobe.d/station.conf", "install floppy /bin/false\ninstall usb_storage test -e /etc/prismesh/allow-usb-storage && /sbin/modprobe --ignore-install usb_storage\n")
         self.write(f"{SYSTEM}/modeld.service", "[Service]\nExecStart=/usr/bin/modeld\n")
         self.write(f"{SYSTEM}/nftables.service", "[Service]\nExecStart=/usr/sbin/nft\n")
+        self.write(f"{SYSTEM}/systemd-networkd.service", "[Service]\nExecStart=/usr/lib/networkd\n")
+        self.write(f"{SYSTEM}/systemd-networkd.service.d/station.conf", "[Unit]\nRequires=nftables.service\n")
         self.write(f"{SYSTEM}/getty@.service", "[Service]\nExecStart=-/sbin/agetty\n")
         self.write(f"{SYSTEM}/serial-getty@.service", "[Service]\nExecStart=-/sbin/agetty\n")
         self.write(f"{SYSTEM}/debug-shell.service", "[Service]\nExecStart=/bin/sh\n")
@@ -221,6 +223,30 @@ class Audit(unittest.TestCase):
         (self.root / "etc/systemd/system/multi-user.target.wants/nftables.service").unlink()
         self.assertTrue(any(fault.startswith("firewall") for fault in self.faults()))
 
+    def test_a_network_without_the_firewall(self):
+        self.write(f"{SYSTEM}/systemd-networkd.service.d/station.conf", "[Unit]\nAfter=nftables.service\n")
+        self.finds("firewall", "systemd-networkd.service doesn't require nftables.service")
+
+    def numbers(self, text):
+        path = pathlib.Path(self.folder.name) / "users.conf"
+        path.write_text(text)
+        self.write("etc/group", "root:x:0:\nnogroup:x:65534:\nkiosk:x:990:\n")
+        return audit.audit(self.root, audit.read_list(self.list), audit.read_numbers(path))
+
+    def test_numbers_that_are_the_same(self):
+        self.assertEqual(self.numbers("# why\nu kiosk 990 \"Kiosk\" /\n"), [])
+        self.assertEqual(self.numbers("g kiosk 990\nu kiosk 990:990 - /\n"), [])
+
+    def test_a_user_and_a_group_with_another_number(self):
+        faults = self.numbers("u kiosk 991\n")
+        self.assertEqual([fault.split(":")[1][:45] for fault in faults], [" the user kiosk has the number 990, not 991", " the group kiosk has the number 990, not 991"])
+
+    def test_a_user_without_a_number_and_a_number_without_a_user(self):
+        faults = self.numbers("g kiosk 990\nu modeld 992:990\n")
+        self.assertEqual(len(faults), 2, faults)
+        self.assertIn("the user kiosk has no number", faults[0])
+        self.assertIn("the user modeld, whom the image doesn't have", faults[1])
+
     def test_a_line_of_the_list_for_nothing(self):
         self.list.write_text(LIST + "cups.service  # prints\n")
         self.finds("unit", "cups.service", "doesn't have")
@@ -233,6 +259,14 @@ class Audit(unittest.TestCase):
     def test_links_lead_inside_the_tree(self):
         self.link("etc/outside", "/etc/shadow")
         self.assertEqual(audit.Tree(self.root).resolve("etc/outside"), self.root / "etc/shadow")
+
+    def test_the_kept_numbers_are_those_of_all_our_users(self):
+        project = HERE.parents[1]
+        kept = audit.read_numbers(project / "scripts/image/users.conf")
+        ours = audit.read_numbers(project / "systemd/sysusers.d/prismesh.conf")
+        self.assertEqual([name for kind in ours for name in ours[kind] if name not in kept[kind]], [])
+        for kind in kept:
+            self.assertEqual(len(set(kept[kind].values())), len(kept[kind]), "two have one number")
 
     def test_the_kept_list_can_be_read(self):
         allowed = audit.read_list(HERE.parents[1] / "scripts/image/allowed.txt")

@@ -5,9 +5,11 @@ import os
 import pathlib
 import re
 import shutil
+import socket
 import subprocess
 import sys
 import tempfile
+import threading
 
 PROJECT = pathlib.Path(__file__).resolve().parents[2]
 failed = 0
@@ -29,10 +31,12 @@ ExecStart=
 ExecStart=/usr/bin/prismesh-kiosk --runtime-dir /run/prismesh --size 640x480 --headless-frames 100000 --pace 0.2 --shots /var/lib/prismesh-kiosk
 WatchdogSec=60
 """
+# The container's own cable, with a DHCP server at its other end.
+CABLE, HERE, OFFERED, CLOCK = "ve-prismesh", "192.0.2.1", "192.0.2.77", "192.0.2.9"
 PROBE = """[Unit]
 After=prismesh.target
 [Service]
-ExecStart=/bin/sh -c "/bin/bash /mnt/health.sh >/mnt/said 2>&1; systemctl poweroff"
+ExecStart=/bin/sh -c "/bin/bash /mnt/probe.sh >/mnt/said 2>&1; systemctl poweroff"
 """
 
 
@@ -43,13 +47,75 @@ def health(root, folder):
     (units / "prismesh-kiosk.service.d/headless.conf").write_text(HEADLESS)
     (units / "probe.service").write_text(PROBE)
     (units / "multi-user.target.wants/probe.service").symlink_to("../probe.service")
+    said = started(root, folder, "health.sh", ["--private-network"])
+    check("the health check was tried in a container", len(re.findall("^ok: ", said, re.M)) == 6 and "FAILED" not in said)
+
+
+def started(root, folder, script, options):
+    """Starts the root in a container, where the script runs once the station does; returns what the script said."""
     folder.mkdir()
-    shutil.copy(pathlib.Path(__file__).parent / "health.sh", folder)
-    subprocess.run(["timeout", "-k", "5", "300", "systemd-nspawn", "-q", "-D", root, "--volatile=overlay", "--register=no", "--keep-unit", "--private-network",
+    shutil.copy(pathlib.Path(__file__).parent / script, folder / "probe.sh")
+    subprocess.run(["timeout", "-k", "5", "300", "systemd-nspawn", "-q", "-D", root, "--volatile=overlay", "--register=no", "--keep-unit", *options,
                     "--console=pipe", f"--bind={folder}:/mnt", "-b", "systemd.show_status=0"], stdin=subprocess.DEVNULL, capture_output=True)
     said = (folder / "said").read_text() if (folder / "said").exists() else ""
-    print(said, end="")
-    check("the health check was tried in a container", len(re.findall("^ok: ", said, re.M)) == 6 and "FAILED" not in said)
+    print(said, end="", flush=True)
+    return said
+
+
+class Dhcp(threading.Thread):
+    """Brings this end of the cable up and offers one address there."""
+    def __init__(self):
+        super().__init__(daemon=True)
+        self.ended = threading.Event()
+
+    def run(self):
+        while not pathlib.Path(f"/sys/class/net/{CABLE}").exists():
+            if self.ended.wait(0.05):
+                return
+        for command in (f"address add {HERE}/24 dev {CABLE}", f"link set {CABLE} up"):
+            subprocess.run(["ip", *command.split()], check=True)
+        link = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        link.setsockopt(socket.SOL_SOCKET, socket.SO_BINDTODEVICE, CABLE.encode())
+        link.setsockopt(socket.SOL_SOCKET, socket.SO_BROADCAST, 1)
+        link.bind(("0.0.0.0", 67))
+        link.settimeout(0.2)
+        while not self.ended.is_set():
+            try:
+                asked = link.recv(2048)
+            except TimeoutError:
+                continue
+            except OSError:
+                return  # the cable is gone
+            # RFC 2131: the options begin behind 236 bytes and a mark; 53 is the kind of message, 1 a search, 3 a request.
+            kinds = {1: 2, 3: 5}
+            at, kind = 240, 0
+            while at + 1 < len(asked) and asked[at] != 255:
+                if asked[at] == 53:
+                    kind = asked[at + 2]
+                at += 2 + asked[at + 1] if asked[at] else 1
+            if kind not in kinds:
+                continue
+            options = bytes([53, 1, kinds[kind]])
+            for option, value in ((54, HERE), (1, "255.255.255.0"), (3, HERE), (42, CLOCK)):
+                options += bytes([option, 4]) + socket.inet_aton(value)
+            options += bytes([51, 4, 0, 0, 14, 16, 255])
+            answer = b"\x02\x01\x06\x00" + asked[4:8] + bytes(2) + asked[10:12] + bytes(4) + socket.inet_aton(OFFERED) + socket.inet_aton(HERE) + bytes(4) + asked[28:44]
+            link.sendto(answer + bytes(236 - len(answer)) + b"\x63\x82\x53\x63" + options, ("255.255.255.255", 68))
+
+
+def network(root, folder):
+    """Starts the root once more, with a site's wrong network settings and faulty firewall, on a network that has DHCP."""
+    (root / "etc/systemd/network").mkdir(exist_ok=True)
+    (root / "etc/systemd/network/10-site.network").write_text("[Match]\nName=eth9\n[Network]\nAddress=192.0.2.50/24\n")
+    (root / "etc/nftables.conf").write_text("table inet station { chain input { typo } }\n")
+    script = root / "usr/lib/prismesh/network"
+    script.write_text(script.read_text().replace("patience=60", "patience=6"))
+    server = Dhcp()
+    server.start()
+    said = started(root, folder, "network.sh", ["--network-veth", "--machine=prismesh"])
+    server.ended.set()
+    server.join()
+    check("network settings and firewall were tried in a container", len(re.findall("^ok: ", said, re.M)) == 12 and "FAILED" not in said)
 
 
 def main():
@@ -69,7 +135,8 @@ def main():
         for name in ("root.img", "prismesh.unsigned.efi"):
             same = subprocess.run(["cmp", sealed / name, again / "sealed" / name], capture_output=True, text=True)
             check(f"built again from the same packages, {name} has the same bytes", same.returncode == 0, same.stdout)
-        health(again / "root", again / "mnt")
+        health(again / "root", again / "health")
+        network(again / "root", again / "network")
     check("the root fits its hash", verify(sealed / "root.img", tree, root_hash).returncode == 0)
     with tempfile.TemporaryDirectory(dir=image) as folder:
         broken = pathlib.Path(folder) / "root.img"
