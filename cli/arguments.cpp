@@ -427,6 +427,9 @@ void add_session(Parser& parser) {
   edit_app->add_flag("--keep-on-cancel", options->keep_on_cancel,
                      "if a repair is stopped by Ctrl-C, keep what it has reached; the exit status is 1");
   add_optional(add("save", Action::save, "save the document"), "OUT", options->output, "the main file to write (default: in place)");
+  CLI::App* report_app = add("report", Action::report, "write what the open document changes as a page that can be mailed");
+  report_app->add_option("-o,--output", options->output, "the page of HTML to write")->required();
+  add_optional(report_app, "--before", options->before, "the deck before (default: the document's file, as it is on disk)");
   add("state", Action::state, "print what is open");
   add("undo", Action::undo, "undo the last edit");
   add("redo", Action::redo, "apply the last undone edit again");

@@ -3,12 +3,12 @@
 #include <numeric>
 #include <ostream>
 
+#include "base/child_process.h"
 #include "base/counted.h"
 #include "base/file.h"
 #include "base/hash.h"
 #include "cli/batch_slurm.h"
 #include "cli/batch_workers.h"
-#include "cli/child_process.h"
 #include "cli/commands.h"
 #include "cli/draw_picture.h"
 #include "cli/json_output.h"

@@ -5,8 +5,8 @@
 
 #include <sys/wait.h>
 
+#include "base/child_process.h"
 #include "base/file.h"
-#include "cli/child_process.h"
 #include "cli/temporary_folder.h"
 #include "mesh/report/id_list.h"
 

@@ -10,7 +10,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "cli/child_process.h"
+#include "base/child_process.h"
 #include "cli/progress_bar.h"
 #include "cli/temporary_folder.h"
 

@@ -68,6 +68,7 @@ struct ReportOptions {
   std::filesystem::path b;
   std::filesystem::path output;
   std::optional<std::filesystem::path> journal;  ///< of the edits, or a script
+  std::vector<std::string> done;                 ///< the edits in words, where no journal tells them
   std::string view = "iso";                      ///< of the pictures
 };
 int report(const ReportOptions& options, const Common& common, const Context& context);
@@ -161,13 +162,14 @@ int render(const RenderOptions& options, const Common& common, const Context& co
 
 /// Talks to a running modeld.
 struct SessionOptions {
-  enum class Action : std::uint8_t { open, edit, save, state, undo, redo, close };
+  enum class Action : std::uint8_t { open, edit, save, state, undo, redo, close, report };
   Action action = Action::state;
   std::optional<std::filesystem::path> runtime_directory;
   std::filesystem::path deck;                   ///< open
   std::vector<std::string> edits;               ///< edit: JSON, done first
   std::optional<std::filesystem::path> script;  ///< edit: JSON Lines, done after them
-  std::optional<std::filesystem::path> output;  ///< save: the main file to write; absent: in place
+  std::optional<std::filesystem::path> output;  ///< save: the main file to write; absent: in place. report: the page
+  std::optional<std::filesystem::path> before;  ///< report: the deck to compare with; absent: the document's file
   std::string stored;                           ///< open: a model of the store, instead of `deck`
   bool sandboxed = false;                       ///< open
   bool discard = false;                         ///< open, close: gives unsaved edits up

@@ -1,6 +1,6 @@
 #include "cli/open_deck.h"
 
-#include "cli/program_beside.h"
+#include "base/child_process.h"
 #include "cli/progress_bar.h"
 #include "cli/report_text.h"
 #include "ipc/import/client.h"

@@ -11,11 +11,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "base/child_process.h"
 #include "cli/commands.h"
 #include "cli/draw_picture.h"
 #include "cli/figures.h"
 #include "cli/open_deck.h"
-#include "cli/program_beside.h"
 #include "cli/progress_bar.h"
 #include "cli/report_text.h"
 #include "ipc/model/field_page.h"

@@ -136,6 +136,7 @@ int report(const ReportOptions& options, const Common& common, const Context& co
     if (!known) return refuse(known.error());
     edits = std::move(*known);
   }
+  if (!options.done.empty()) edits = mesh::report::KnownEdits{"the open document", options.done, false, {}};
   say_warnings(context, *before);
   say_warnings(context, *after);
   say_guesses(context, *before);

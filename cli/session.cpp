@@ -3,12 +3,16 @@
 #include <ostream>
 #include <system_error>
 
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include "base/counted.h"
 #include "cli/commands.h"
 #include "cli/edit_list.h"
 #include "cli/json_output.h"
 #include "cli/progress_bar.h"
 #include "cli/report_text.h"
+#include "cli/temporary_folder.h"
 #include "ipc/model/client.h"
 #include "ipc/model/messages_json.h"
 #include "ipc/wire/failure.h"
@@ -33,6 +37,8 @@ class Session {
  public:
   Session(const SessionOptions& options, const Context& context)
       : socket_(ipc::model_socket_path(options.runtime_directory)), client_(socket_, "prismesh session"), context_(context) {}
+
+  const std::filesystem::path& socket() const { return socket_; }
 
   /// Connects. Without a socket it fails at once; else it waits for the daemon. A daemon that ends in order removes its socket, so a socket
   /// without a listener belongs to one that may be restarting.
@@ -198,6 +204,52 @@ int edit_all(Session& session, const std::vector<WantedEdit>& wanted, const Comm
   return kDone;
 }
 
+/// The last states up to the current one, at most as many as edits are in the journal.
+std::vector<std::string> edits_done(const ipc::DocumentState& state) {
+  std::vector<std::string> done;
+  for (const ipc::ListedGeneration& each : state.generations)
+    if (each.number <= state.generation && each.number != state.generations.front().number) done.push_back(each.made_by);
+  const std::uint64_t journalled = state.journalled_edits + state.recovered_edits;
+  if (done.size() > journalled) done.erase(done.begin(), done.end() - static_cast<std::ptrdiff_t>(journalled));
+  return done;
+}
+
+/// Has the document saved as a copy, and writes the page from the deck before and this copy.
+int report_document(Session& session, const SessionOptions& options, const Common& common, const Context& context) {
+  const auto refuse = [&](const Error& error) {
+    say(context, error);
+    return kFailed;
+  };
+  const Result<ipc::DocumentState> state = session.state();
+  if (!state) return refuse(state.error());
+  if (!state->open) return refuse({"prismesh session", 0, "no document is open"});
+  if (!state->changed && !options.before) return refuse({state->path, 0, "has no unsaved edits: name the deck before them with --before"});
+  if (!state->stored.empty())
+    return refuse({state->path, 0, "comes from the store, and nobody vouches for it: a report reads decks outside the sandbox"});
+  struct stat socket {};
+  if (::stat(session.socket().c_str(), &socket) == 0 && socket.st_uid != ::geteuid())
+    return refuse({session.socket().string(), 0,
+                   "belongs to another user, who can't save a copy for this one: save the document, and use prismesh report"});
+  std::error_code unlike;
+  if (std::filesystem::equivalent(state->path, *options.output, unlike) && !unlike)
+    return refuse({options.output->string(), 0, "is the open deck, and would be replaced: name another file with -o"});
+  const Result<TemporaryFolder> folder = TemporaryFolder::make();
+  if (!folder) return refuse(folder.error());
+  ipc::Save copy;
+  copy.path = (folder->path() / std::filesystem::path(state->path).filename()).string();
+  copy.stays_unsaved = true;
+  if (const Result<ipc::Answer> saved = session.ask_again(copy, "saving a copy"); !saved) return refuse(saved.error());
+  ReportOptions wanted;
+  wanted.a = options.before.value_or(state->path);
+  wanted.b = *copy.path;
+  wanted.output = *options.output;
+  wanted.done = edits_done(*state);
+  Common judged = common;  // as the document is
+  if (!common.length_unit && !state->length_unit_guessed) judged.length_unit = length_unit_from(state->length_unit);
+  if (common.rules.empty() && !state->target_size_guessed) judged.rules.push_back({{}, state->target_size, {}, {}, 0});
+  return report(wanted, judged, context);
+}
+
 }  // namespace
 
 int session(const SessionOptions& options, const Common& common, const Context& context) {
@@ -215,6 +267,7 @@ int session(const SessionOptions& options, const Common& common, const Context& 
     case SessionAction::edit:
     case SessionAction::undo:
     case SessionAction::redo: return edit_all(session, wanted, common, context);
+    case SessionAction::report: return report_document(session, options, common, context);
     case SessionAction::open:
       answer = session.ask_again(open_request(options, common), "reading " + options.deck.filename().string());
       break;

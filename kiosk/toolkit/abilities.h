@@ -46,8 +46,6 @@ class GuardsInput : public Ability {
   virtual bool takes_input(bool fresh) = 0;
   /// False: the command isn't carried out.
   virtual bool allow_command(const input::Command& command) = 0;
-  /// When it must be watched at the latest; negative: whenever.
-  virtual std::int64_t next_ns(std::int64_t now_ns) const = 0;
 };
 
 /// Has a handle in the picture that pulls the model.
@@ -74,6 +72,8 @@ class Watches : public Ability {
  public:
   /// Looks at it, at each turn of the kiosk.
   virtual void watch(std::int64_t now_ns) = 0;
+  /// When it must be watched at the latest; negative: whenever.
+  virtual std::int64_t next_ns(std::int64_t /*now_ns*/) const { return -1; }
 };
 
 // --- what Esc ends ---

@@ -101,7 +101,7 @@ bool ToolSet::allow_command(const input::Command& command) {
 
 std::int64_t ToolSet::next_ns(std::int64_t now_ns) const {
   std::int64_t next = -1;
-  for (const GuardsInput* tool : with<GuardsInput>())
+  for (const Watches* tool : with<Watches>())
     if (const std::int64_t wanted = tool->next_ns(now_ns); wanted >= 0 && (next < 0 || wanted < next)) next = wanted;
   return next;
 }

@@ -83,6 +83,7 @@ TEST(KeysTest, rows_keep_the_order_of_help_and_menu) {
                                              "Ctrl+S",
                                              "Ctrl+Shift+S",
                                              "Ctrl+Shift+C",
+                                             "Ctrl+Shift+W",
                                              "Ctrl+Q",
                                              "Ctrl+I",
                                              "Ctrl+Z",

@@ -63,8 +63,10 @@ TEST_F(RenderBadInput, of_20000_parts_shows_and_picks_each) {
 TEST_F(RenderBadInput, a_thousandth_at_ten_millions_is_drawn_as_at_zero) {
   const auto sheet = [](const mesh::Vec3& away) {
     test::TestSource source;
-    test::add_grid(source, 150, 150, 0,
-                   [&](double u, double v) { return away + mesh::Vec3(0.15 * u, 0.15 * v, 0.01 * std::sin(9 * u) * std::cos(8 * v)); });
+    // The type is said: a sum of Eigen's refers to its terms, which end with the return.
+    test::add_grid(source, 150, 150, 0, [&](double u, double v) -> mesh::Vec3 {
+      return away + mesh::Vec3(0.15 * u, 0.15 * v, 0.01 * std::sin(9 * u) * std::cos(8 * v));
+    });
     return source;
   };
   const test::TestSource near = sheet(mesh::Vec3::Zero()), far = sheet(mesh::Vec3(1e7, -1e7, 1e7));

@@ -14,6 +14,7 @@
 #include "kiosk/link/wanted_deck.h"
 #include "kiosk/tools/files/browse.h"
 #include "kiosk/tools/files/path_box.h"
+#include "kiosk/tools/files/report_writer.h"
 #include "kiosk/tools/files/shelf.h"
 #include "tests/kiosk/gui_test.h"
 
@@ -301,6 +302,51 @@ TEST_F(PathBox, lays_out_only_the_rows_in_sight_of_a_large_folder) {
   const auto rows = std::ranges::count_if(items_, [](const panels::ScreenItem& item) { return item.name.starts_with("file "); });
   EXPECT_LT(rows, 60);
   EXPECT_GT(rows, 5);
+}
+
+TEST(ReportPage, lies_beside_the_deck_under_a_name_that_is_free) {
+  const Folder folder;
+  EXPECT_EQ(report_page(folder / "car.k", ""), folder / "car-report.html");
+  std::ofstream(folder / "car-report.html") << "kept\n";
+  std::ofstream(folder / "car-report-2.html") << "kept\n";
+  EXPECT_EQ(report_page(folder / "car.k", ""), folder / "car-report-3.html");
+  EXPECT_EQ(report_page("/proc/none/car.k", folder / ""), fs::path(folder / "") / "car-report-3.html") << "nothing can be written there";
+}
+
+ReportWriter::Outcome outcome_of(const std::string& script, const fs::path& page, const Folder& folder) {
+  const fs::path program = folder / "prismesh";
+  std::ofstream(program) << "#!/bin/sh\n" << script;
+  fs::permissions(program, fs::perms::owner_all);
+  ReportWriter writer;
+  EXPECT_TRUE(writer.begin(program, "/run/somewhere", page).has_value());
+  EXPECT_FALSE(writer.begin(program, "/run/somewhere", page).has_value()) << "one at a time";
+  for (;;)
+    if (const std::optional<ReportWriter::Outcome> outcome = writer.look()) {
+      EXPECT_FALSE(writer.writes());
+      EXPECT_FALSE(writer.look().has_value()) << "told once";
+      return *outcome;
+    }
+}
+
+TEST(ReportWriter, tells_what_came_of_it) {
+  const Folder folder;
+  const fs::path page = folder / "page.html";
+  const ReportWriter::Outcome good = outcome_of("echo \"$@\" > \"$6\"\n", page, folder);
+  EXPECT_TRUE(good.is_written) << good.words;
+  EXPECT_EQ(good.words, "The report is in " + page.string());
+  std::ifstream written(page);
+  std::string line;
+  std::getline(written, line);
+  EXPECT_EQ(line, "session report --runtime-dir /run/somewhere -o " + page.string());
+  const ReportWriter::Outcome bare = outcome_of("echo 'warning: a picture is missing: no kiosk' >&2\n", page, folder);
+  EXPECT_TRUE(bare.is_written);
+  EXPECT_THAT(bare.words, HasSubstr("without pictures: "));
+  const ReportWriter::Outcome bad = outcome_of("echo 'first' >&2; echo 'car.k: is gone' >&2; exit 1\n", page, folder);
+  EXPECT_FALSE(bad.is_written);
+  EXPECT_EQ(bad.words, "No report: car.k: is gone");
+  const ReportWriter::Outcome killed = outcome_of("kill -9 $$\n", page, folder);
+  EXPECT_FALSE(killed.is_written);
+  EXPECT_THAT(killed.words, HasSubstr("signal 9"));
 }
 
 }  // namespace

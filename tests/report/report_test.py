@@ -13,6 +13,7 @@ import struct
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 import zlib
 
@@ -201,6 +202,43 @@ class Report(unittest.TestCase):
         page = Page(self.out.read_text())
         self.assertEqual([text[:12] for text in page.texts if text.startswith("No picture")], ["No picture: "] * 4)
         self.figures_agree(page)
+
+    def test_of_a_session(self):
+        run, state = self.folder / "run", self.folder / "state"
+        for each in (run, state):
+            each.mkdir(mode=0o700)
+        daemon = subprocess.Popen([PROGRAMS / "prismesh-modeld", "--runtime-dir", run, "--state-dir", state], stderr=subprocess.DEVNULL)
+        self.addCleanup(daemon.wait)
+        self.addCleanup(daemon.terminate)
+        while not (run / "model.sock").exists():
+            self.assertIsNone(daemon.poll())
+            time.sleep(0.02)
+        session = lambda *words: prismesh("session", *words, "--runtime-dir", run)
+        nothing = session("report", "-o", self.out)
+        self.assertEqual((nothing.returncode, nothing.stderr), (1, b"prismesh session: no document is open\n"))
+        self.assertEqual(session("open", self.a).returncode, 0)
+        unchanged = session("report", "-o", self.out)
+        self.assertEqual(unchanged.returncode, 1)
+        self.assertIn(b"has no unsaved edits: name the deck before them with --before", unchanged.stderr)
+        for edit in BEAD[:2]:
+            self.assertEqual(session("edit", json.dumps(edit)).returncode, 0)
+        self.assertIn(b"would be replaced", session("report", "-o", self.a).stderr)
+        done = session("report", "-o", self.out)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        page = Page(self.out.read_text(encoding="utf-8"))
+        self.assertEqual(page.faults, [])
+        self.edited(BEAD[:2])  # the same edits by the command line
+        self.figures_agree(page)
+        self.assertIn("lift", [text for text in page.texts])
+        self.assertIn(b'"changed":true', session("state", "--json").stdout)
+        deck = self.a.read_bytes()
+        self.assertEqual(session("save").returncode, 0)
+        before = self.folder / "before.k"
+        before.write_bytes(deck)
+        done = session("report", "--before", before, "-o", self.out)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.a = before
+        self.figures_agree(Page(self.out.read_text(encoding="utf-8")))
 
     def test_what_cannot_be_done_is_said_and_writes_nothing(self):
         self.b.write_bytes(self.a.read_bytes())

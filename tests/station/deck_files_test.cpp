@@ -99,6 +99,27 @@ TEST_F(DeckFilesTest, a_copy_leaves_the_document_and_its_unsaved_edits_as_they_a
   EXPECT_TRUE(station_->kiosk().wait_for("saved ").ends_with(station_->deck().string()));
 }
 
+TEST_F(DeckFilesTest, a_report_of_the_unsaved_edits_is_written_beside_the_deck) {
+  start();
+  const std::filesystem::path page = in_folder((station_->deck().stem().string() + "-report.html").c_str());
+  station_->key("ctrl+shift+w");
+  ASSERT_EQ(station_->kiosk().wait_for("report "), "report begun");
+  ASSERT_EQ(station_->kiosk().wait_for("report "), "report written");
+  const std::string text = whole_file(page);
+  EXPECT_NE(text.find("<li><code>lift</code></li>"), std::string::npos) << "it lists the edits";
+  EXPECT_NE(text.find("data:image/png;base64,"), std::string::npos) << "it has its pictures";
+  EXPECT_EQ(whole_file(station_->deck()), original_);
+  EXPECT_TRUE(station_->kiosk().last("generation ").ends_with("changed 1")) << "the edits are still unsaved";
+  station_->show_people("report_written");
+  station_->kiosk().skip_lines();
+  station_->key("ctrl+s");
+  ASSERT_TRUE(station_->kiosk().wait_for("saved ").ends_with(station_->deck().string()));
+  ASSERT_FALSE(generation_after_saving().empty());
+  station_->key("ctrl+shift+w");
+  EXPECT_TRUE(station_->kiosk().wait_for("notice ").starts_with("notice information There are no unsaved edits to report"));
+  EXPECT_FALSE(std::filesystem::exists(in_folder((station_->deck().stem().string() + "-report-2.html").c_str())));
+}
+
 TEST_F(DeckFilesTest, with_unsaved_edits_another_deck_is_opened_after_saving_discarding_or_not_at_all) {
   start();
   const std::filesystem::path other = in_folder("other.k");

@@ -1,8 +1,10 @@
 #include "kiosk/tools/files/files_tool.h"
 
 #include <array>
+#include <cstdlib>
 #include <filesystem>
 
+#include "base/child_process.h"
 #include "kiosk/toolkit/open_panels.h"
 
 namespace prismesh::kiosk::tools::files {
@@ -16,8 +18,9 @@ using display::letter;
 
 constexpr std::string_view kName = "files";
 constexpr std::size_t kRecentDecks = 8;
+constexpr std::int64_t kReportLookNs = 100'000'000;
 
-enum class FilesCommand : std::uint8_t { open, save, save_as, save_copy, quit };
+enum class FilesCommand : std::uint8_t { open, save, save_as, save_copy, report, quit };
 
 constexpr Command command_of(FilesCommand command) { return {kName, static_cast<std::uint8_t>(command)}; }
 
@@ -28,6 +31,8 @@ constexpr std::array kKeys = {
                "save as another deck, and go on with that one"},
     KeyBinding{letter('C'), true, true, command_of(FilesCommand::save_copy), Menu::file, "Ctrl+Shift+C",
                "save a copy, and go on with this deck"},
+    KeyBinding{letter('W'), true, true, command_of(FilesCommand::report), Menu::file, "Ctrl+Shift+W",
+               "write a report of the unsaved edits, a page to mail"},
     KeyBinding{letter('Q'), true, false, command_of(FilesCommand::quit), Menu::file, "Ctrl+Q", "quit; with unsaved edits it asks first"},
 };
 
@@ -55,6 +60,7 @@ void FilesTool::command(std::uint8_t number, const toolkit::Pointer&) {
     case FilesCommand::save_copy:
       if (context_.shown.snapshot) dialog(PathDialog::save_copy);
       break;
+    case FilesCommand::report: write_report(); break;
     case FilesCommand::quit:
       deck_files_.quit();
       context_.quits = deck_files_.quits();
@@ -91,6 +97,35 @@ void FilesTool::reply(panels::Reply reply) {
   deck_files_.reply(reply);
   context_.quits = deck_files_.quits();
 }
+
+void FilesTool::write_report() {
+  using Kind = notices::Notice::Kind;
+  const auto& newest = context_.link.document.snapshot();
+  if (!newest) return;
+  if (!newest->info().changed)
+    return context_.notices.say(Kind::information,
+                                "There are no unsaved edits to report. `prismesh report BEFORE AFTER -o PAGE` compares two decks.");
+  const Result<std::filesystem::path> program = program_beside("prismesh", "which writes reports", "prismesh");
+  const char* home = std::getenv("HOME");
+  const std::filesystem::path page = report_page(newest->info().document, home != nullptr ? home : "");
+  const Result<void> begun =
+      program ? report_.begin(*program, context_.link.connection.socket().parent_path(), page) : fail(program.error());
+  context_.trace.line("report " + std::string(begun ? "begun" : "refused"));
+  if (begun)
+    context_.notices.say(Kind::information, "Writing " + page.string() + "; you can go on.");
+  else
+    context_.notices.say(Kind::error, "No report: " + begun.error().text());
+}
+
+void FilesTool::watch(std::int64_t) {
+  const std::optional<ReportWriter::Outcome> outcome = report_.look();
+  if (!outcome) return;
+  context_.notices.say(outcome->is_written ? notices::Notice::Kind::information : notices::Notice::Kind::error, outcome->words);
+  context_.trace.line(std::string("report ") + (outcome->is_written ? "written" : "failed"));
+}
+
+/// A program that ends sends no message.
+std::int64_t FilesTool::next_ns(std::int64_t now_ns) const { return report_.writes() ? now_ns + kReportLookNs : -1; }
 
 std::string FilesTool::save_remark() const {
   return context_.shown.older ? "It is the newest state that was saved, not the older one that is shown." : "";

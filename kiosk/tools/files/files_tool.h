@@ -11,6 +11,7 @@
 #include "kiosk/toolkit/tool_context.h"
 #include "kiosk/tools/files/deck_files.h"
 #include "kiosk/tools/files/path_box.h"
+#include "kiosk/tools/files/report_writer.h"
 #include "kiosk/tools/files/shelf.h"
 
 namespace prismesh::kiosk::tools::files {
@@ -21,7 +22,7 @@ input::Command quit_command();
 input::Command open_command();
 input::Command save_command();
 
-class FilesTool final : public toolkit::Tool, public toolkit::HasDialogs, public toolkit::AsksQuestions {
+class FilesTool final : public toolkit::Tool, public toolkit::HasDialogs, public toolkit::AsksQuestions, public toolkit::Watches {
  public:
   explicit FilesTool(toolkit::ToolContext& context)
       : context_(context), deck_files_(context.link, context.trace), decks_(context.options.decks_opened) {}
@@ -33,13 +34,17 @@ class FilesTool final : public toolkit::Tool, public toolkit::HasDialogs, public
   void draw_dialog(int kind, bool opened, panels::PanelLayout& layout) override;
   const panels::Question* question() const override { return deck_files_.question() ? &*deck_files_.question() : nullptr; }
   void reply(panels::Reply reply) override;
+  void watch(std::int64_t now_ns) override;
+  std::int64_t next_ns(std::int64_t now_ns) const override;
 
  private:
+  void write_report();
   std::string save_remark() const;
   void enter(PathDialog dialog, const std::string& path);
 
   toolkit::ToolContext& context_;
   DeckFiles deck_files_;
+  ReportWriter report_;
   toolkit::HistoryFile decks_;
   PathEntry entry_;
   std::vector<BrowseRow> shelf_;                             ///< as of when the box was opened

@@ -1,4 +1,4 @@
-#include "cli/child_process.h"
+#include "base/child_process.h"
 
 #include <cstring>
 #include <system_error>
@@ -11,7 +11,7 @@
 
 #include "base/file.h"
 
-namespace prismesh::cli {
+namespace prismesh {
 
 namespace {
 
@@ -44,6 +44,14 @@ Result<std::filesystem::path> own_program() {
   std::filesystem::path own = std::filesystem::read_symlink("/proc/self/exe", error);
   if (error) return fail("/proc/self/exe", "can't be read: " + error.message());
   return own;
+}
+
+Result<std::filesystem::path> program_beside(const std::string& name, const std::string& what, const std::string& package) {
+  const Result<std::filesystem::path> own = own_program();
+  std::filesystem::path program = own ? own->parent_path() / name : std::filesystem::path(name);
+  if (!own || ::access(program.c_str(), X_OK) != 0)
+    return fail(program.string(), name + ", " + what + ", isn't beside this program; the package " + package + " has it");
+  return program;
 }
 
 std::vector<std::size_t> own_cores() {
@@ -93,4 +101,4 @@ std::string last_line(const std::filesystem::path& file) {
   return std::string(text.substr(text.rfind('\n') + 1));
 }
 
-}  // namespace prismesh::cli
+}  // namespace prismesh

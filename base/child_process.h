@@ -1,4 +1,4 @@
-// Starts programs and tells how they ended. Inner to cli.
+// Starts programs and tells how they ended.
 #pragma once
 
 #include <cstddef>
@@ -11,10 +11,14 @@
 
 #include "base/error.h"
 
-namespace prismesh::cli {
+namespace prismesh {
 
 /// The program that runs now, by its path.
 Result<std::filesystem::path> own_program();
+
+/// The program of this name in the folder of this one. `what`: "which draws pictures"; `package`: the one that has it. Errors: it isn't
+/// there.
+Result<std::filesystem::path> program_beside(const std::string& name, const std::string& what, const std::string& package);
 
 /// Starts a program, found by PATH if its name has no slash, with standard input from /dev/null and its outputs into files. `cores`: the
 /// processors that it may use; empty: ours. Errors: it can't be started, a file can't be written.
@@ -30,4 +34,4 @@ std::optional<std::string> failure_words(int status);
 /// The last line that isn't empty of a text file; empty without one.
 std::string last_line(const std::filesystem::path& file);
 
-}  // namespace prismesh::cli
+}  // namespace prismesh
