@@ -6,6 +6,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 
 #include <sys/wait.h>
 #include <unistd.h>
@@ -113,13 +114,13 @@ class Crew {
     int status = 0;
     const pid_t ended = waitpid(slot.child, &status, WNOHANG);
     if (ended == 0 || (ended < 0 && errno == EINTR)) return false;
-    slot.child = 0;
+    const pid_t worker = std::exchange(slot.child, 0);
     --busy_;
     ++ended_;
     const std::string& key = work_.keys[slot.index];
     if (store_.has(key)) return true;
     ++without_;
-    store_.remove_left_work();  // of a worker that was killed
+    store_.remove_work(key, worker);  // of a worker that was killed
     if (!context_.stop()) note_failure(slot, status, key, seconds, work_, store_);
     return true;
   }

@@ -94,7 +94,19 @@ std::string table_csv(const Table& table) {
 
 std::string table_json(const Table& table) {
   using Json = nlohmann::ordered_json;
-  Json rows = Json::array();
+  const auto text_of = [](const Json& json) { return json.dump(1, ' ', false, Json::error_handler_t::replace); };
+  const Json head{{"study", table.name},
+                  {"plan", table.plan_file},
+                  {"length_unit", table.length_unit.empty() ? Json(nullptr) : Json(table.length_unit)},
+                  {"variants", table.rows.size()},
+                  {"done", table.count(RowState::done)},
+                  {"refused", table.count(RowState::refused)},
+                  {"failed", table.count(RowState::failed)},
+                  {"missing", table.count(RowState::missing)}};
+  std::string out = text_of(head);
+  out.resize(out.size() - 2);  // without the brace, on a line of its own
+  out += ",\n \"rows\": [";
+  // row by row: as one object a large study takes several times the memory of its text
   for (const Row& row : table.rows) {
     Json values = Json::object();
     for (std::size_t p = 0; p < row.values.size(); ++p)
@@ -114,18 +126,13 @@ std::string table_json(const Table& table) {
     entry["file"] = file.empty() ? Json(nullptr) : Json(file);
     entry["notes"] = row.result ? Json(row.result->notes) : Json::array();
     entry["key"] = row.key;
-    rows.push_back(std::move(entry));
+    out += &row == table.rows.data() ? "\n  " : ",\n  ";
+    for (const char c : text_of(entry)) {
+      out += c;
+      if (c == '\n') out += "  ";
+    }
   }
-  const Json all{{"study", table.name},
-                 {"plan", table.plan_file},
-                 {"length_unit", table.length_unit.empty() ? Json(nullptr) : Json(table.length_unit)},
-                 {"variants", table.rows.size()},
-                 {"done", table.count(RowState::done)},
-                 {"refused", table.count(RowState::refused)},
-                 {"failed", table.count(RowState::failed)},
-                 {"missing", table.count(RowState::missing)},
-                 {"rows", std::move(rows)}};
-  return all.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return out + (table.rows.empty() ? "]\n}\n" : "\n ]\n}\n");
 }
 
 }  // namespace prismesh::mesh::batch

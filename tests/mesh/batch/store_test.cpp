@@ -3,6 +3,7 @@
 
 #include <fstream>
 #include <random>
+#include <set>
 #include <thread>
 
 #include <sys/wait.h>
@@ -10,6 +11,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "mesh/batch/records.h"
 #include "mesh/batch/study.h"
@@ -117,6 +119,33 @@ TEST_F(StoreTest, work_of_a_killed_process_is_removed_and_that_of_others_stays) 
   EXPECT_TRUE(fs::exists(folder_ / "variants" / "work-ghi-another_machine-1"));
 }
 
+TEST_F(StoreTest, work_of_one_ended_process_is_removed_alone) {
+  const Store store(folder_);
+  const auto leave = [&](const char* key) {
+    const pid_t child = fork();
+    if (child == 0) {
+      Result<WorkFolder> work = store.begin(key);
+      _exit(work ? 0 : 1);  // as a kill does: the destructor doesn't run
+    }
+    int status = 1;
+    waitpid(child, &status, 0);
+    EXPECT_EQ(status, 0);
+    return child;
+  };
+  const auto left = [&] {
+    std::set<std::string> names;
+    for (const auto& entry : fs::directory_iterator(folder_ / "variants")) names.insert(entry.path().filename().string().substr(0, 8));
+    return names;
+  };
+  const pid_t one = leave("abc");
+  leave("def");
+  store.remove_work("def", one);
+  store.remove_work("abc", one + 1);
+  EXPECT_EQ(left(), (std::set<std::string>{"work-abc", "work-def"}));
+  store.remove_work("abc", one);
+  EXPECT_EQ(left(), (std::set<std::string>{"work-def"}));
+}
+
 TEST_F(StoreTest, what_isnt_a_result_is_said) {
   write("r.json", "{\"key\": 1}");
   EXPECT_THAT(read_result(folder_ / "r.json").error().text(), HasSubstr("r.json: the result of a variant"));
@@ -217,6 +246,15 @@ TEST_F(StudyTest, a_variant_is_worked_and_told_in_the_table) {
   EXPECT_NEAR(table->rows[0].result->max_displacement, 1, 1e-9);
   EXPECT_TRUE(table->rows[0].result->after.penetrations);
   EXPECT_THAT(table_csv(*table), HasSubstr("2,refused,a.k,s.jsonl,99,"));
+
+  // written row by row, and yet as the library lays it out
+  const std::string json = table_json(*table);
+  const auto parsed = nlohmann::ordered_json::parse(json, nullptr, false);
+  EXPECT_EQ(parsed.dump(1) + "\n", json);
+  EXPECT_EQ(parsed["rows"].size(), 3U);
+  EXPECT_EQ(parsed["rows"][1]["state"], "refused");
+  const std::string empty = table_json({});
+  EXPECT_EQ(nlohmann::ordered_json::parse(empty, nullptr, false).dump(1) + "\n", empty);
 
   // results that somebody has damaged
   const std::string first = table->rows[0].key, second = table->rows[1].key;
