@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <csignal>
+#include <cstdint>
 #include <optional>
 #include <set>
 #include <string>
@@ -14,6 +15,7 @@
 #include "cli/child_process.h"
 #include "cli/progress_bar.h"
 #include "cli/temporary_folder.h"
+#include "mesh/batch/read_many.h"
 
 namespace prismesh::cli {
 
@@ -137,20 +139,26 @@ class Crew {
 }  // namespace
 
 Result<WorkToDo> work_left(const mesh::batch::Study& study, const Store& store, const std::vector<std::size_t>& numbers) {
+  enum class Found : std::uint8_t { nothing, damaged, result };
   const mesh::batch::Variants variants(study);
+  std::vector<Result<std::string>> keys(numbers.size());
+  std::vector<Found> found(numbers.size(), Found::nothing);
+  mesh::batch::read_many(numbers.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      keys[i] = variants.key(variants.at(numbers[i]));
+      if (keys[i] && store.has(*keys[i])) found[i] = store.result_of(*keys[i]) ? Found::result : Found::damaged;
+    }
+  });
   WorkToDo work;
   work.max_minutes = study.plan.max_minutes;
   std::set<std::string> seen;
-  for (const std::size_t number : numbers) {
-    Result<std::string> key = variants.key(variants.at(number));
-    if (!key) return fail(key.error());
-    if (!seen.insert(*key).second) continue;
-    if (store.has(*key)) {
-      if (store.result_of(*key)) continue;
-      if (Result<void> aside = store.set_aside(*key); !aside) return fail(aside.error());
-    }
-    work.numbers.push_back(number);
-    work.keys.push_back(std::move(*key));
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    if (!keys[i]) return fail(keys[i].error());
+    if (!seen.insert(*keys[i]).second || found[i] == Found::result) continue;
+    if (found[i] == Found::damaged)
+      if (Result<void> aside = store.set_aside(*keys[i]); !aside) return fail(aside.error());
+    work.numbers.push_back(numbers[i]);
+    work.keys.push_back(std::move(*keys[i]));
   }
   return work;
 }

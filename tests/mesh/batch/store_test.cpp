@@ -1,7 +1,10 @@
 // The store: results appear whole, the first one stays, and work that was left goes. Studies: what changes a variant's key.
 #include "mesh/batch/store.h"
 
+#include <chrono>
+#include <condition_variable>
 #include <fstream>
+#include <mutex>
 #include <random>
 #include <set>
 #include <thread>
@@ -13,6 +16,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "mesh/batch/read_many.h"
 #include "mesh/batch/records.h"
 #include "mesh/batch/study.h"
 #include "mesh/batch/tabulate.h"
@@ -144,6 +148,28 @@ TEST_F(StoreTest, work_of_one_ended_process_is_removed_alone) {
   EXPECT_EQ(left(), (std::set<std::string>{"work-abc", "work-def"}));
   store.remove_work("abc", one);
   EXPECT_EQ(left(), (std::set<std::string>{"work-def"}));
+}
+
+TEST(ReadMany, each_once_and_sixteen_blocks_at_the_same_time) {
+  for (const std::size_t count : {0U, 1U, 63U, 64U, 65U, 5000U}) {
+    std::vector<int> seen(count);
+    read_many(count, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) ++seen[i];
+    });
+    EXPECT_EQ(seen, std::vector<int>(count, 1));
+  }
+  // as many readers wait for each other as there may be
+  std::mutex mutex;
+  std::condition_variable changed;
+  std::size_t waiting = 0;
+  bool all_met = true;
+  read_many(16 * 64, [&](std::size_t, std::size_t) {
+    std::unique_lock lock(mutex);
+    ++waiting;
+    changed.notify_all();
+    all_met = changed.wait_for(lock, std::chrono::seconds(60), [&] { return waiting == 16; }) && all_met;
+  });
+  EXPECT_TRUE(all_met);
 }
 
 TEST_F(StoreTest, what_isnt_a_result_is_said) {
