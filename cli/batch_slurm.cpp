@@ -58,7 +58,8 @@ Result<SlurmJobs> submit(const SlurmWork& work) {
 
   const std::string command = "exec " + quoted(program->string()) + " batch " + quoted(work.study.string());
   const std::filesystem::path script = work.folder / "task.sh", collect = work.folder / "collect.sh";
-  const std::string task = "#!/bin/sh\n" + command + " --task \"$SLURM_ARRAY_TASK_ID\" --tasks " + std::to_string(work.tasks) + "\n";
+  const std::string task = "#!/bin/sh\n" + command + " --task \"$SLURM_ARRAY_TASK_ID\" --tasks " + std::to_string(work.tasks) +
+                           " --jobs \"${SLURM_CPUS_PER_TASK:-1}\"\n";
   if (Result<void> done = write_text(script, task); !done) return fail(done.error());
   if (Result<void> done = write_text(collect, "#!/bin/sh\n" + command + "\n"); !done) return fail(done.error());
 

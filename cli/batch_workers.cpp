@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cerrno>
 #include <csignal>
+#include <cstdint>
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 
 #include <sys/wait.h>
 #include <unistd.h>
@@ -13,6 +15,7 @@
 #include "base/child_process.h"
 #include "cli/progress_bar.h"
 #include "cli/temporary_folder.h"
+#include "mesh/batch/read_many.h"
 
 namespace prismesh::cli {
 
@@ -113,13 +116,13 @@ class Crew {
     int status = 0;
     const pid_t ended = waitpid(slot.child, &status, WNOHANG);
     if (ended == 0 || (ended < 0 && errno == EINTR)) return false;
-    slot.child = 0;
+    const pid_t worker = std::exchange(slot.child, 0);
     --busy_;
     ++ended_;
     const std::string& key = work_.keys[slot.index];
     if (store_.has(key)) return true;
     ++without_;
-    store_.remove_left_work();  // of a worker that was killed
+    store_.remove_work(key, worker);  // of a worker that was killed
     if (!context_.stop()) note_failure(slot, status, key, seconds, work_, store_);
     return true;
   }
@@ -136,20 +139,26 @@ class Crew {
 }  // namespace
 
 Result<WorkToDo> work_left(const mesh::batch::Study& study, const Store& store, const std::vector<std::size_t>& numbers) {
+  enum class Found : std::uint8_t { nothing, damaged, result };
   const mesh::batch::Variants variants(study);
+  std::vector<Result<std::string>> keys(numbers.size());
+  std::vector<Found> found(numbers.size(), Found::nothing);
+  mesh::batch::read_many(numbers.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      keys[i] = variants.key(variants.at(numbers[i]));
+      if (keys[i] && store.has(*keys[i])) found[i] = store.result_of(*keys[i]) ? Found::result : Found::damaged;
+    }
+  });
   WorkToDo work;
   work.max_minutes = study.plan.max_minutes;
   std::set<std::string> seen;
-  for (const std::size_t number : numbers) {
-    Result<std::string> key = variants.key(variants.at(number));
-    if (!key) return fail(key.error());
-    if (!seen.insert(*key).second) continue;
-    if (store.has(*key)) {
-      if (store.result_of(*key)) continue;
-      if (Result<void> aside = store.set_aside(*key); !aside) return fail(aside.error());
-    }
-    work.numbers.push_back(number);
-    work.keys.push_back(std::move(*key));
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    if (!keys[i]) return fail(keys[i].error());
+    if (!seen.insert(*keys[i]).second || found[i] == Found::result) continue;
+    if (found[i] == Found::damaged)
+      if (Result<void> aside = store.set_aside(*keys[i]); !aside) return fail(aside.error());
+    work.numbers.push_back(numbers[i]);
+    work.keys.push_back(std::move(*keys[i]));
   }
   return work;
 }

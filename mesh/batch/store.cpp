@@ -86,10 +86,14 @@ Result<void> Store::set_aside(const std::string& key) const {
   return {};
 }
 
+fs::path Store::work_folder(const std::string& key, std::int64_t process) const {
+  return folder_ / "variants" / (std::string(kWork) + key + "-" + machine() + "-" + std::to_string(process));
+}
+
 Result<WorkFolder> Store::begin(const std::string& key) const {
   const fs::path variants = folder_ / "variants";
   if (Result<void> made = make_folders(variants); !made) return fail(made.error());
-  const fs::path path = variants / (std::string(kWork) + key + "-" + machine() + "-" + std::to_string(getpid()));
+  const fs::path path = work_folder(key, getpid());
   std::error_code failed;
   fs::remove_all(path, failed);  // of a process that had our number
   if (!fs::create_directory(path, failed) || failed) return fail(path.string(), "can't be made: " + failed.message());
@@ -136,6 +140,11 @@ std::optional<Failure> Store::failure_of(const std::string& key) const {
   Result<Failure> read = read_failure(failure_file(key));
   if (!read) return Failure{key, read.error().text(), 0};
   return *read;
+}
+
+void Store::remove_work(const std::string& key, std::int64_t process) const {
+  std::error_code ignored;
+  fs::remove_all(work_folder(key, process), ignored);
 }
 
 std::size_t Store::remove_left_work() const {

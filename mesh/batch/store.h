@@ -1,6 +1,7 @@
 // The folder of a study's results. Each result appears whole or not at all, and is never replaced.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -50,8 +51,11 @@ class Store {
   std::optional<Failure> failure_of(const std::string& key) const;
   /// Removes folders of work that processes of this machine left when they were killed. Returns how many.
   std::size_t remove_left_work() const;
+  /// Removes the folder of work that one process of this machine, which has ended, left of one variant. Lists nothing.
+  void remove_work(const std::string& key, std::int64_t process) const;
 
  private:
+  std::filesystem::path work_folder(const std::string& key, std::int64_t process) const;
   std::filesystem::path failure_file(const std::string& key) const { return folder_ / "failed" / (key + ".json"); }
 
   std::filesystem::path folder_;

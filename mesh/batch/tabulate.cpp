@@ -1,11 +1,15 @@
 #include "mesh/batch/tabulate.h"
 
 #include <filesystem>
+#include <map>
+#include <mutex>
+#include <optional>
 #include <set>
 
 #include <nlohmann/json.hpp>
 
 #include "mesh/batch/columns.h"
+#include "mesh/batch/read_many.h"
 #include "mesh/batch/records.h"
 
 namespace prismesh::mesh::batch {
@@ -18,42 +22,60 @@ std::string as_named(const std::filesystem::path& file, const Study& study) {
   return (relative.empty() || *relative.begin() == ".." ? file : relative).generic_string();
 }
 
+/// What became of one variant. Errors: those of Variants::key.
+Result<Row> row_of(const Study& study, const Variants& variants, const Store& store, std::size_t number) {
+  const Variant variant = variants.at(number);
+  Result<std::string> key = variants.key(variant);
+  if (!key) return fail(key.error());
+  Row row;
+  row.number = number + 1;
+  row.key = std::move(*key);
+  row.deck = as_named(study.decks[variant.deck].path, study);
+  row.script = as_named(study.scripts[variant.script].file, study);
+  row.values = variant.values;
+  if (store.has(row.key)) {
+    Result<VariantResult> result = store.result_of(row.key);
+    if (result) {
+      row.state = result->outcome == Outcome::done ? RowState::done : RowState::refused;
+      row.reason = result->reason;
+      row.result = std::move(*result);
+    } else {
+      row.state = RowState::failed;
+      row.reason = result.error().text() + "; the next start works it again";
+    }
+  } else if (const std::optional<Failure> failure = store.failure_of(row.key)) {
+    row.state = RowState::failed;
+    row.reason = failure->reason;
+  }
+  return row;
+}
+
 }  // namespace
 
 Result<Table> tabulate(const Study& study, const Store& store) {
   const Variants variants(study);
   Table table;
-  std::set<std::string> units;
   table.name = study.plan.name;
   table.plan_file = study.plan_file.filename().string();
   for (const Parameter& parameter : study.plan.parameters) table.parameters.push_back(parameter.name);
-  for (std::size_t number = 0; number < variants.count(); ++number) {
-    const Variant variant = variants.at(number);
-    Result<std::string> key = variants.key(variant);
-    if (!key) return fail(key.error());
-    Row row;
-    row.number = number + 1;
-    row.key = std::move(*key);
-    row.deck = as_named(study.decks[variant.deck].path, study);
-    row.script = as_named(study.scripts[variant.script].file, study);
-    row.values = variant.values;
-    if (store.has(row.key)) {
-      Result<VariantResult> result = store.result_of(row.key);
-      if (result) {
-        row.state = result->outcome == Outcome::done ? RowState::done : RowState::refused;
-        row.reason = result->reason;
-        units.insert(result->length_unit);
-        row.result = std::move(*result);
-      } else {
-        row.state = RowState::failed;
-        row.reason = result.error().text() + "; the next start works it again";
+  table.rows.resize(variants.count());
+  std::map<std::size_t, Error> errors;  // by number: the first one is told, whoever meets it first
+  std::mutex locked;
+  read_many(variants.count(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t number = begin; number < end; ++number) {
+      Result<Row> row = row_of(study, variants, store, number);
+      if (row) {
+        table.rows[number] = std::move(*row);
+        continue;
       }
-    } else if (const std::optional<Failure> failure = store.failure_of(row.key)) {
-      row.state = RowState::failed;
-      row.reason = failure->reason;
+      const std::lock_guard lock(locked);
+      errors.emplace(number, std::move(row.error()));
     }
-    table.rows.push_back(std::move(row));
-  }
+  });
+  if (!errors.empty()) return fail(std::move(errors.begin()->second));
+  std::set<std::string> units;
+  for (const Row& row : table.rows)
+    if (row.result) units.insert(row.result->length_unit);
   // Lengths of decks in several units aren't told as if they were of one.
   if (units.size() == 1) table.length_unit = *units.begin();
   return table;
@@ -94,7 +116,19 @@ std::string table_csv(const Table& table) {
 
 std::string table_json(const Table& table) {
   using Json = nlohmann::ordered_json;
-  Json rows = Json::array();
+  const auto text_of = [](const Json& json) { return json.dump(1, ' ', false, Json::error_handler_t::replace); };
+  const Json head{{"study", table.name},
+                  {"plan", table.plan_file},
+                  {"length_unit", table.length_unit.empty() ? Json(nullptr) : Json(table.length_unit)},
+                  {"variants", table.rows.size()},
+                  {"done", table.count(RowState::done)},
+                  {"refused", table.count(RowState::refused)},
+                  {"failed", table.count(RowState::failed)},
+                  {"missing", table.count(RowState::missing)}};
+  std::string out = text_of(head);
+  out.resize(out.size() - 2);  // without the brace, on a line of its own
+  out += ",\n \"rows\": [";
+  // row by row: as one object a large study takes several times the memory of its text
   for (const Row& row : table.rows) {
     Json values = Json::object();
     for (std::size_t p = 0; p < row.values.size(); ++p)
@@ -114,18 +148,13 @@ std::string table_json(const Table& table) {
     entry["file"] = file.empty() ? Json(nullptr) : Json(file);
     entry["notes"] = row.result ? Json(row.result->notes) : Json::array();
     entry["key"] = row.key;
-    rows.push_back(std::move(entry));
+    out += &row == table.rows.data() ? "\n  " : ",\n  ";
+    for (const char c : text_of(entry)) {
+      out += c;
+      if (c == '\n') out += "  ";
+    }
   }
-  const Json all{{"study", table.name},
-                 {"plan", table.plan_file},
-                 {"length_unit", table.length_unit.empty() ? Json(nullptr) : Json(table.length_unit)},
-                 {"variants", table.rows.size()},
-                 {"done", table.count(RowState::done)},
-                 {"refused", table.count(RowState::refused)},
-                 {"failed", table.count(RowState::failed)},
-                 {"missing", table.count(RowState::missing)},
-                 {"rows", std::move(rows)}};
-  return all.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return out + (table.rows.empty() ? "]\n}\n" : "\n ]\n}\n");
 }
 
 }  // namespace prismesh::mesh::batch

@@ -6,6 +6,7 @@ import filecmp
 import json
 import os
 import tempfile
+import tomllib
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
@@ -76,8 +77,25 @@ class Tools:
             raise Refused(f"{whole}: there is no such file")
         return whole
 
+    def _check_settings(self, deck: str) -> None:
+        """The settings beside a deck, and the criteria files that they name, lie below the root too."""
+        file = deck + ".prismesh.toml"
+        if not os.path.lexists(file):
+            return
+        self._inside(file)
+        try:
+            with open(file, "rb") as opened:
+                settings = tomllib.load(opened)
+        except (OSError, ValueError):
+            return  # the opening says what is wrong
+        parts = settings.get("parts")
+        for table in [settings, *(parts if isinstance(parts, list) else [])]:
+            if isinstance(table, dict) and isinstance(table.get("criteria"), str):
+                self._inside(table["criteria"], os.path.dirname(deck))
+
     def _open(self, path: str, progress: Progress, **options: Any) -> tuple[prismesh.Document, list[str]]:
         """Opens a deck all of whose files lie below the root. Of a file outside nothing is told but that."""
+        self._check_settings(path)
         try:
             document = prismesh.open(path, progress=progress, **options)
         except prismesh.Error as error:

@@ -212,6 +212,18 @@ class Slurm(Batch):
             cluster.until_done(120)
             self.assertEqual(study.faults(8), [])
 
+    def test_a_task_uses_the_processors_that_it_has(self):
+        study = self.study('pictures = false\n[parameters]\nheight = {from = 2, to = 12, levels = 40}\n[slurm]\nmax_tasks = 1\noptions = ["--cpus-per-task=2"]\n')
+        with Cluster(self.folder / "cluster", 2) as cluster:
+            done = study.batch("--slurm", env=cluster.environment)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            most = 0
+            while cluster.jobs():
+                workers = subprocess.run(["pgrep", "-f", f"^{study.program} batch {study.results}.* --variant "], capture_output=True, text=True)
+                most = max(most, len(workers.stdout.split()))
+            self.assertEqual(most, 2)
+            self.assertEqual(study.faults(40), [])
+
 
 if __name__ == "__main__":
     PROGRAMS = pathlib.Path(sys.argv.pop(1)).resolve()

@@ -247,9 +247,16 @@ class Files(InFolder):
         for name, include in (("up.k", "../secret.k"), ("through.k", "out/secret.k"), ("missing.k", "../none.k"), ("broken.k", "../broken_outside.k")):
             (self.root / name).write_text(f"*KEYWORD\n*INCLUDE\n{include}\n*NODE\n%8d%16.3f%16.3f%16.3f\n*END\n" % (900001, 1, 2, 3))
         (self.outside / "broken_outside.k").write_text("*KEYWORD\n*NODE\n       1 SECRETWORD\n*END\n")
+        (self.outside / "criteria.toml").write_text('name = "SECRETWORD"\n[metrics.warpage]\nwarn_above = 13\nfail_above = 15\n')
+        (self.outside / "settings.toml").write_text('criteria = "strict"\n')
+        for name, settings in (("judged.k", 'criteria = "../criteria.toml"\n'), ("judged_part.k", '[[parts]]\non = "1"\ncriteria = "out/criteria.toml"\n')):
+            (self.root / name).write_bytes(self.before)
+            (self.root / (name + ".prismesh.toml")).write_text(settings)
+        (self.root / "linked.k").write_bytes(self.before)
+        (self.root / "linked.k.prismesh.toml").symlink_to(self.outside / "settings.toml")
         client = self.client()
         refused = "outside the folder"
-        for path in ("../secret.k", str(secret), "link.k", "out/secret.k", "up.k", "through.k", "broken.k"):
+        for path in ("../secret.k", str(secret), "link.k", "out/secret.k", "up.k", "through.k", "broken.k", "judged.k", "judged_part.k", "linked.k"):
             result = client.call("open_deck", path=path)
             self.assertRefused(refused, result)
             self.assertNotIn("SECRETWORD", json.dumps(result))
@@ -262,7 +269,16 @@ class Files(InFolder):
                      {"edit": "weld", "points_file": "out/points.csv"}):
             self.assertRefused(refused, client.call("edit", document="d1", edit=edit))
         self.assertRefused(refused, client.call("open_deck", path="sheet.k", criteria="/etc/passwd"))
-        self.assertEqual(sorted(path.name for path in self.outside.iterdir()), ["broken_outside.k", "edits", "root", "secret.k"])
+        self.assertEqual(sorted(path.name for path in self.outside.iterdir()), ["broken_outside.k", "criteria.toml", "edits", "root", "secret.k", "settings.toml"])
+
+    def test_settings_beside_the_deck_hold(self):
+        (self.root / "sheet.k.prismesh.toml").write_text('criteria = "strict"\n')
+        client = self.client()
+        client.do("open_deck", path="sheet.k")
+        by_program = decks.program_json("check", self.deck)[0]
+        self.assertEqual(client.do("check_quality", document="d1"), by_program)
+        client.do("edit", document="d1", edit={"edit": "set_criteria", "criteria": "default"})
+        self.assertNotEqual(client.do("check_quality", document="d1")["criteria"], by_program["criteria"])
 
     def test_no_file_is_replaced_unless_both_sides_say_so(self):
         other = self.root / "other.k"

@@ -1,8 +1,12 @@
 // The store: results appear whole, the first one stays, and work that was left goes. Studies: what changes a variant's key.
 #include "mesh/batch/store.h"
 
+#include <chrono>
+#include <condition_variable>
 #include <fstream>
+#include <mutex>
 #include <random>
+#include <set>
 #include <thread>
 
 #include <sys/wait.h>
@@ -10,7 +14,9 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
+#include "mesh/batch/read_many.h"
 #include "mesh/batch/records.h"
 #include "mesh/batch/study.h"
 #include "mesh/batch/tabulate.h"
@@ -117,6 +123,55 @@ TEST_F(StoreTest, work_of_a_killed_process_is_removed_and_that_of_others_stays) 
   EXPECT_TRUE(fs::exists(folder_ / "variants" / "work-ghi-another_machine-1"));
 }
 
+TEST_F(StoreTest, work_of_one_ended_process_is_removed_alone) {
+  const Store store(folder_);
+  const auto leave = [&](const char* key) {
+    const pid_t child = fork();
+    if (child == 0) {
+      Result<WorkFolder> work = store.begin(key);
+      _exit(work ? 0 : 1);  // as a kill does: the destructor doesn't run
+    }
+    int status = 1;
+    waitpid(child, &status, 0);
+    EXPECT_EQ(status, 0);
+    return child;
+  };
+  const auto left = [&] {
+    std::set<std::string> names;
+    for (const auto& entry : fs::directory_iterator(folder_ / "variants")) names.insert(entry.path().filename().string().substr(0, 8));
+    return names;
+  };
+  const pid_t one = leave("abc");
+  leave("def");
+  store.remove_work("def", one);
+  store.remove_work("abc", one + 1);
+  EXPECT_EQ(left(), (std::set<std::string>{"work-abc", "work-def"}));
+  store.remove_work("abc", one);
+  EXPECT_EQ(left(), (std::set<std::string>{"work-def"}));
+}
+
+TEST(ReadMany, each_once_and_sixteen_blocks_at_the_same_time) {
+  for (const std::size_t count : {0U, 1U, 63U, 64U, 65U, 5000U}) {
+    std::vector<int> seen(count);
+    read_many(count, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) ++seen[i];
+    });
+    EXPECT_EQ(seen, std::vector<int>(count, 1));
+  }
+  // as many readers wait for each other as there may be
+  std::mutex mutex;
+  std::condition_variable changed;
+  std::size_t waiting = 0;
+  bool all_met = true;
+  read_many(16 * 64, [&](std::size_t, std::size_t) {
+    std::unique_lock lock(mutex);
+    ++waiting;
+    changed.notify_all();
+    all_met = changed.wait_for(lock, std::chrono::seconds(60), [&] { return waiting == 16; }) && all_met;
+  });
+  EXPECT_TRUE(all_met);
+}
+
 TEST_F(StoreTest, what_isnt_a_result_is_said) {
   write("r.json", "{\"key\": 1}");
   EXPECT_THAT(read_result(folder_ / "r.json").error().text(), HasSubstr("r.json: the result of a variant"));
@@ -217,6 +272,15 @@ TEST_F(StudyTest, a_variant_is_worked_and_told_in_the_table) {
   EXPECT_NEAR(table->rows[0].result->max_displacement, 1, 1e-9);
   EXPECT_TRUE(table->rows[0].result->after.penetrations);
   EXPECT_THAT(table_csv(*table), HasSubstr("2,refused,a.k,s.jsonl,99,"));
+
+  // written row by row, and yet as the library lays it out
+  const std::string json = table_json(*table);
+  const auto parsed = nlohmann::ordered_json::parse(json, nullptr, false);
+  EXPECT_EQ(parsed.dump(1) + "\n", json);
+  EXPECT_EQ(parsed["rows"].size(), 3U);
+  EXPECT_EQ(parsed["rows"][1]["state"], "refused");
+  const std::string empty = table_json({});
+  EXPECT_EQ(nlohmann::ordered_json::parse(empty, nullptr, false).dump(1) + "\n", empty);
 
   // results that somebody has damaged
   const std::string first = table->rows[0].key, second = table->rows[1].key;
