@@ -19,8 +19,9 @@ CODES = {500: b"InternalError", 503: b"SlowDown", 403: b"AccessDenied"}
 
 
 class Request:
-    def __init__(self, method, target, size):
-        self.method, self.target, self.size = method, target, size
+    def __init__(self, method, target, headers):
+        self.method, self.target = method, target
+        self.size, self.range = int(headers.get("content-length", 0)), headers.get("range")
         self.path = target.split("?")[0]
         self.fault = None
         self.status = None  # None: the client got no answer
@@ -63,7 +64,8 @@ class FaultyLine:
         self.rule = rule or (lambda request: None)
 
     def count(self, method, part=""):
-        return sum(request.method == method and part in request.path for request in self.requests)
+        """Requests that were passed on and answered with success."""
+        return sum(request.method == method and part in request.path and request.status in (200, 206) for request in self.requests)
 
     def serve(self, client):
         head, _, rest = read_head(client)
@@ -72,7 +74,7 @@ class FaultyLine:
         first, *lines = head.decode("latin-1").split("\r\n")
         method, target, _ = first.split(" ")
         headers = {line.split(":", 1)[0].lower(): line.split(":", 1)[1].strip() for line in lines}
-        request = Request(method, target, int(headers.get("content-length", 0)))
+        request = Request(method, target, headers)
         request.fault = self.rule(request)
         self.requests.append(request)
         fault, *number = request.fault or ("none",)
