@@ -12,6 +12,7 @@ A fault is a function of a request that returns None or one of
 """
 import socket
 import socketserver
+import ssl
 import threading
 
 REFUSAL = b"<?xml version='1.0' encoding='UTF-8'?>\n<Error><Code>%s</Code><Message>planted</Message></Error>"
@@ -31,18 +32,26 @@ class Request:
 
 
 class FaultyLine:
-    def __init__(self, port):
+    def __init__(self, port, identity=None):
+        """To the store at `port` of this host. `identity`: files of a certificate and its key, for a line over TLS."""
         self.upstream = ("127.0.0.1", port)
         self.rule = lambda request: None
         self.requests = []
         self.over = threading.Event()
         line = self
+        tls = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER) if identity else None
+        if tls:
+            tls.load_cert_chain(*identity)
 
         class Handler(socketserver.BaseRequestHandler):
             def handle(self):
                 try:
-                    line.serve(self.request)
-                except (ConnectionError, TimeoutError):
+                    if tls is None:
+                        line.serve(self.request)
+                    else:
+                        with tls.wrap_socket(self.request, server_side=True) as client:
+                            line.serve(client)
+                except (ConnectionError, TimeoutError, ssl.SSLError):
                     pass
 
         class Server(socketserver.ThreadingTCPServer):

@@ -5,6 +5,7 @@ no service of the machine. Nothing of it is left when it ends.
 """
 import os
 import pathlib
+import pwd
 import socket
 import subprocess
 import sys
@@ -24,10 +25,16 @@ START = """
 import os, signal, sys
 from swift.common import utils
 utils.set_swift_dir(sys.argv[1])
+from swift.common.ring import RingBuilder
 from swift.common.wsgi import run_wsgi
+for name, port in (each.split(":") for each in sys.argv[2:]):
+    ring = RingBuilder(2, 1, 0)
+    ring.add_dev({"region": 1, "zone": 1, "ip": "127.0.0.1", "port": int(port), "device": "disk", "weight": 1, "meta": ""})
+    ring.rebalance()
+    ring.get_ring().save(f"{sys.argv[1]}/{name}.ring.gz")
 import swift.proxy.server, swift.account.server, swift.container.server, swift.obj.server, swift.common.middleware.s3api.s3api
 children = []
-for server in sys.argv[2:]:
+for server in ("account", "container", "object", "proxy"):
     children.append(os.fork())
     if children[-1] == 0:
         sys.exit(run_wsgi(f"{sys.argv[1]}/{server}-server.conf", f"{server}-server"))
@@ -39,16 +46,6 @@ finally:
     for child in children:
         os.kill(child, signal.SIGKILL)  # they keep nothing that is looked at later
         os.waitpid(child, 0)
-"""
-MAKE_RINGS = """
-import sys
-from swift.common.ring import RingBuilder
-folder, ports = sys.argv[1], dict(zip(("account", "container", "object"), map(int, sys.argv[2:])))
-for server, port in ports.items():
-    ring = RingBuilder(2, 1, 0)
-    ring.add_dev({"region": 1, "zone": 1, "ip": "127.0.0.1", "port": port, "device": "disk", "weight": 1, "meta": ""})
-    ring.rebalance()
-    ring.get_ring().save(f"{folder}/{server}.ring.gz")
 """
 PROXY = """[DEFAULT]
 bind_ip = 127.0.0.1
@@ -65,14 +62,37 @@ allow_account_management = true
 account_autocreate = true
 node_timeout = 20
 [filter:cache]
-use = egg:swift#memcache
-memcache_servers = 127.0.0.1:1
+paste.filter_factory = memory_cache:factory
 [filter:s3api]
 use = egg:swift#s3api
 location = {region}
 [filter:tempauth]
 use = egg:swift#tempauth
 user_test_tester = {secret} .admin
+"""
+# What memcached would hold for one proxy, in its own memory.
+CACHE = """
+class Memory:
+    def __init__(self):
+        self.values = {}
+    def get(self, key, *_, **__):
+        return self.values.get(key)
+    def set(self, key, value, *_, **__):
+        self.values[key] = value
+    def incr(self, key, delta=1, *_, **__):
+        self.values[key] = self.values.get(key, 0) + delta
+        return self.values[key]
+    def delete(self, key, *_, **__):
+        self.values.pop(key, None)
+
+def factory(conf, **_):
+    memory = Memory()
+    def wrap(app):
+        def call(environment, start):
+            environment["swift.cache"] = memory
+            return app(environment, start)
+        return call
+    return wrap
 """
 STORAGE = """[DEFAULT]
 bind_ip = 127.0.0.1
@@ -93,7 +113,7 @@ use = egg:swift#{server}
 
 def missing():
     """Why there can be no Swift here; empty: there can."""
-    if not os.path.exists(PYTHON) or subprocess.run([PYTHON, "-c", "import swift.common.middleware.s3api"], capture_output=True).returncode:
+    if not os.path.exists(PYTHON) or not os.path.exists("/usr/lib/python3/dist-packages/swift/common/middleware/s3api"):
         return "not installed: python3-swift"
     with tempfile.NamedTemporaryFile() as file:
         try:
@@ -123,14 +143,14 @@ class SwiftStore:
         try:
             (self.folder / "devices" / "disk").mkdir(parents=True)
             (self.folder / "swift.conf").write_text("[swift-hash]\nswift_hash_path_suffix = prismesh\n[storage-policy:0]\nname = one\ndefault = yes\n")
-            subprocess.run([PYTHON, "-c", MAKE_RINGS, self.folder, *map(str, self.inner)], check=True, capture_output=True)
-            user = subprocess.run(["id", "-un"], capture_output=True, text=True, check=True).stdout.strip()
+            user = pwd.getpwuid(os.geteuid()).pw_name
             for server, port in zip(SERVERS, self.inner):
                 self.write(server, STORAGE.format(server=server, port=port, folder=self.folder, user=user))
             self.write("proxy", PROXY.format(port=self.port, folder=self.folder, user=user, secret=SECRET_KEY, region=REGION))
             with open(self.folder / "swift.out", "ab") as log:
-                command = [PYTHON, "-c", START, str(self.folder), *SERVERS, "proxy"]
-                self.servers = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=log, stderr=log)
+                (self.folder / "memory_cache.py").write_text(CACHE)
+                command = [PYTHON, "-c", START, str(self.folder), *(f"{server}:{port}" for server, port in zip(SERVERS, self.inner))]
+                self.servers = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=log, stderr=log, env={**os.environ, "PYTHONPATH": str(self.folder)})
             for port in (*self.inner, self.port):
                 self.until_it_listens(port)
         except BaseException:

@@ -83,7 +83,7 @@ class MemoryStore {
     VaultOptions options;
     options.retry = {patience, std::chrono::milliseconds(1)};
     options.line.silence = std::chrono::seconds(20);
-    return {address(), {std::nullopt, "here", "key", "secret"}, options, std::move(stop)};
+    return {address(), {std::nullopt, "here", "key", "secret", ""}, options, std::move(stop)};
   }
 
   static std::string answer(const std::string& status, const std::string& body, const std::string& headers = "") {
