@@ -486,8 +486,9 @@ void add_vault(Parser& parser) {
                "the file of keys, which only you may read (default: vault.toml in ~/.config/prismesh; $AWS_ACCESS_KEY_ID and "
                "$AWS_SECRET_ACCESS_KEY come first)");
   app->add_flag("--plain-http", options->plain_http, "send without encryption to another computer too: all on the way can read the models");
-  app->add_option("--patience", options->patience_s, "how many seconds to try again when the store doesn't answer (default: 60)")
-      ->check(CLI::Range(1, 86400));
+  app->add_option("--patience", options->patience_s, "how long to try again when the store doesn't answer (default: 60 s)")
+      ->type_name("SECONDS")
+      ->check(CLI::Range(1, 86400).description(""));
   using Action = VaultOptions::Action;
   const auto add = [app = app, o = options](const std::string& name, Action action, const std::string& what) {
     CLI::App* command = app->add_subcommand(name, what);

@@ -65,6 +65,7 @@ Result<VaultAddress> parse_vault_address(std::string_view text) {
   const std::size_t end = std::min(rest.find('/'), rest.size());
   address.bucket = rest.substr(0, end);
   if (!is_part(address.bucket) || address.bucket.size() > kMaxBucket) return no_vault(text);
+  if (end + 1 == rest.size()) return no_vault(text);
   rest.remove_prefix(std::min(end + 1, rest.size()));
   if (rest.size() > kMaxFolder) return no_vault(text);
   while (!rest.empty()) {

@@ -168,6 +168,7 @@ struct S3Line::Impl {
     set(curl, CURLOPT_AWS_SIGV4, ("aws:amz:" + keys.region + ":s3").c_str());
     set(curl, CURLOPT_USERNAME, keys.access_key_id.c_str());
     set(curl, CURLOPT_PASSWORD, keys.secret_access_key.c_str());
+    if (!keys.authorities.empty()) set(curl, CURLOPT_CAINFO, keys.authorities.c_str());
     set(curl, CURLOPT_HTTPHEADER, headers.get());
     set(curl, CURLOPT_CONNECTTIMEOUT, static_cast<long>(patience.connect.count()));
     set(curl, CURLOPT_LOW_SPEED_LIMIT, 1L);
@@ -197,7 +198,10 @@ struct S3Line::Impl {
     if (code == CURLE_ABORTED_BY_CALLBACK) return {cancelled(), false};
     if (!exchange.fault.empty()) return {Error{where, 0, exchange.fault, exchange.kind}, false};
     if (code == CURLE_PEER_FAILED_VERIFICATION)
-      return {Error{where, 0, "no authority that this computer trusts vouches for its certificate; nothing was sent"}, false};
+      return {Error{where, 0,
+                    "its certificate is that of another host, or no authority that this computer trusts vouches for it; nothing was sent"},
+              false};
+    if (code == CURLE_SSL_CACERT_BADFILE) return {Error{keys.authorities, 0, "can't be read as certificates; nothing was sent"}, false};
     if (code == CURLE_OPERATION_TIMEDOUT) return {Error{where, 0, "it doesn't answer"}, true};
     return {Error{where, 0, std::string("the request failed: ") + curl_easy_strerror(code)}, passes(code)};
   }

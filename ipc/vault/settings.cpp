@@ -97,6 +97,7 @@ Result<VaultSettings> read_vault_settings(const std::optional<fs::path>& given) 
   if (region) settings.region = std::move(*region);
   if (auto key = environment("AWS_ACCESS_KEY_ID")) settings.access_key_id = std::move(*key);
   if (auto secret = environment("AWS_SECRET_ACCESS_KEY")) settings.secret_access_key = std::move(*secret);
+  if (auto authorities = environment("AWS_CA_BUNDLE")) settings.authorities = std::move(*authorities);
   const std::string where = usual ? ", or access_key_id and secret_access_key in " + usual->string() : "";
   if (settings.access_key_id.empty() || settings.secret_access_key.empty())
     return fail("", "there are no keys for the vault; set AWS_ACCESS_KEY_ID and AWS_SECRET_ACCESS_KEY" + where);

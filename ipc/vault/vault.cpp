@@ -59,6 +59,7 @@ Error Vault::refusal(const S3Answer& answer) const {
   if (said.code == "RequestTimeTooSkewed") return told("this computer's clock differs from the store's; set it");
   if (answer.status == 301 || answer.status == 307 || said.code == "AuthorizationHeaderMalformed")
     return told("the bucket has another region or address (" + words + "); set AWS_REGION, or correct the address");
+  if (is_for_a_while(answer.status)) return told("can't answer now (" + words + ")");
   if (answer.status == 401 || answer.status == 403) return told("refuses these keys, or they may not do this (" + words + ")");
   return told(words);
 }

@@ -12,6 +12,7 @@ A fault is a function of a request that returns None or one of
 """
 import socket
 import socketserver
+import ssl
 import threading
 
 REFUSAL = b"<?xml version='1.0' encoding='UTF-8'?>\n<Error><Code>%s</Code><Message>planted</Message></Error>"
@@ -19,8 +20,9 @@ CODES = {500: b"InternalError", 503: b"SlowDown", 403: b"AccessDenied"}
 
 
 class Request:
-    def __init__(self, method, target, size):
-        self.method, self.target, self.size = method, target, size
+    def __init__(self, method, target, headers):
+        self.method, self.target = method, target
+        self.size, self.range = int(headers.get("content-length", 0)), headers.get("range")
         self.path = target.split("?")[0]
         self.fault = None
         self.status = None  # None: the client got no answer
@@ -30,18 +32,26 @@ class Request:
 
 
 class FaultyLine:
-    def __init__(self, port):
+    def __init__(self, port, identity=None):
+        """To the store at `port` of this host. `identity`: files of a certificate and its key, for a line over TLS."""
         self.upstream = ("127.0.0.1", port)
         self.rule = lambda request: None
         self.requests = []
         self.over = threading.Event()
         line = self
+        tls = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER) if identity else None
+        if tls:
+            tls.load_cert_chain(*identity)
 
         class Handler(socketserver.BaseRequestHandler):
             def handle(self):
                 try:
-                    line.serve(self.request)
-                except (ConnectionError, TimeoutError):
+                    if tls is None:
+                        line.serve(self.request)
+                    else:
+                        with tls.wrap_socket(self.request, server_side=True) as client:
+                            line.serve(client)
+                except (ConnectionError, TimeoutError, ssl.SSLError):
                     pass
 
         class Server(socketserver.ThreadingTCPServer):
@@ -63,7 +73,8 @@ class FaultyLine:
         self.rule = rule or (lambda request: None)
 
     def count(self, method, part=""):
-        return sum(request.method == method and part in request.path for request in self.requests)
+        """Requests that were passed on and answered with success."""
+        return sum(request.method == method and part in request.path and request.status in (200, 206) for request in self.requests)
 
     def serve(self, client):
         head, _, rest = read_head(client)
@@ -72,7 +83,7 @@ class FaultyLine:
         first, *lines = head.decode("latin-1").split("\r\n")
         method, target, _ = first.split(" ")
         headers = {line.split(":", 1)[0].lower(): line.split(":", 1)[1].strip() for line in lines}
-        request = Request(method, target, int(headers.get("content-length", 0)))
+        request = Request(method, target, headers)
         request.fault = self.rule(request)
         self.requests.append(request)
         fault, *number = request.fault or ("none",)

@@ -5,7 +5,7 @@ no service of the machine. Nothing of it is left when it ends.
 """
 import os
 import pathlib
-import signal
+import pwd
 import socket
 import subprocess
 import sys
@@ -19,23 +19,33 @@ REGION = "us-east-1"
 PATIENCE_S = 60
 
 SERVERS = ("account", "container", "object")
-# The programs swift-proxy-server and so on are these lines, but for the folder of swift.conf.
+# The programs swift-proxy-server and so on are a call of run_wsgi each; here they are forks of one process, which imports Swift once, and read
+# another swift.conf.
 START = """
-import sys
+import os, signal, sys
 from swift.common import utils
 utils.set_swift_dir(sys.argv[1])
-from swift.common.wsgi import run_wsgi
-sys.exit(run_wsgi(f"{sys.argv[1]}/{sys.argv[2]}.conf", sys.argv[2]))
-"""
-MAKE_RINGS = """
-import sys
 from swift.common.ring import RingBuilder
-folder, ports = sys.argv[1], dict(zip(("account", "container", "object"), map(int, sys.argv[2:])))
-for server, port in ports.items():
+from swift.common.wsgi import run_wsgi
+for name, port in (each.split(":") for each in sys.argv[2:]):
     ring = RingBuilder(2, 1, 0)
-    ring.add_dev({"region": 1, "zone": 1, "ip": "127.0.0.1", "port": port, "device": "disk", "weight": 1, "meta": ""})
+    ring.add_dev({"region": 1, "zone": 1, "ip": "127.0.0.1", "port": int(port), "device": "disk", "weight": 1, "meta": ""})
     ring.rebalance()
-    ring.get_ring().save(f"{folder}/{server}.ring.gz")
+    ring.get_ring().save(f"{sys.argv[1]}/{name}.ring.gz")
+import swift.proxy.server, swift.account.server, swift.container.server, swift.obj.server, swift.common.middleware.s3api.s3api
+children = []
+for server in ("account", "container", "object", "proxy"):
+    children.append(os.fork())
+    if children[-1] == 0:
+        sys.exit(run_wsgi(f"{sys.argv[1]}/{server}-server.conf", f"{server}-server"))
+signal.signal(signal.SIGCHLD, lambda *_: sys.exit("a server has ended"))
+try:
+    sys.stdin.read()  # until the test ends, however it does
+finally:
+    signal.signal(signal.SIGCHLD, signal.SIG_DFL)
+    for child in children:
+        os.kill(child, signal.SIGKILL)  # they keep nothing that is looked at later
+        os.waitpid(child, 0)
 """
 PROXY = """[DEFAULT]
 bind_ip = 127.0.0.1
@@ -52,14 +62,37 @@ allow_account_management = true
 account_autocreate = true
 node_timeout = 20
 [filter:cache]
-use = egg:swift#memcache
-memcache_servers = 127.0.0.1:1
+paste.filter_factory = memory_cache:factory
 [filter:s3api]
 use = egg:swift#s3api
 location = {region}
 [filter:tempauth]
 use = egg:swift#tempauth
 user_test_tester = {secret} .admin
+"""
+# What memcached would hold for one proxy, in its own memory.
+CACHE = """
+class Memory:
+    def __init__(self):
+        self.values = {}
+    def get(self, key, *_, **__):
+        return self.values.get(key)
+    def set(self, key, value, *_, **__):
+        self.values[key] = value
+    def incr(self, key, delta=1, *_, **__):
+        self.values[key] = self.values.get(key, 0) + delta
+        return self.values[key]
+    def delete(self, key, *_, **__):
+        self.values.pop(key, None)
+
+def factory(conf, **_):
+    memory = Memory()
+    def wrap(app):
+        def call(environment, start):
+            environment["swift.cache"] = memory
+            return app(environment, start)
+        return call
+    return wrap
 """
 STORAGE = """[DEFAULT]
 bind_ip = 127.0.0.1
@@ -80,7 +113,7 @@ use = egg:swift#{server}
 
 def missing():
     """Why there can be no Swift here; empty: there can."""
-    if not os.path.exists(PYTHON) or subprocess.run([PYTHON, "-c", "import swift.common.middleware.s3api"], capture_output=True).returncode:
+    if not os.path.exists(PYTHON) or not os.path.exists("/usr/lib/python3/dist-packages/swift/common/middleware/s3api"):
         return "not installed: python3-swift"
     with tempfile.NamedTemporaryFile() as file:
         try:
@@ -103,18 +136,21 @@ def free_ports(count):
 class SwiftStore:
     def __init__(self, folder):
         self.folder = pathlib.Path(folder)
-        self.servers = {}
+        self.servers = None
         self.port, *self.inner = free_ports(1 + len(SERVERS))
 
     def __enter__(self):
         try:
             (self.folder / "devices" / "disk").mkdir(parents=True)
             (self.folder / "swift.conf").write_text("[swift-hash]\nswift_hash_path_suffix = prismesh\n[storage-policy:0]\nname = one\ndefault = yes\n")
-            subprocess.run([PYTHON, "-c", MAKE_RINGS, self.folder, *map(str, self.inner)], check=True, capture_output=True)
-            user = subprocess.run(["id", "-un"], capture_output=True, text=True, check=True).stdout.strip()
+            user = pwd.getpwuid(os.geteuid()).pw_name
             for server, port in zip(SERVERS, self.inner):
-                self.start(server, STORAGE.format(server=server, port=port, folder=self.folder, user=user))
-            self.start("proxy", PROXY.format(port=self.port, folder=self.folder, user=user, secret=SECRET_KEY, region=REGION))
+                self.write(server, STORAGE.format(server=server, port=port, folder=self.folder, user=user))
+            self.write("proxy", PROXY.format(port=self.port, folder=self.folder, user=user, secret=SECRET_KEY, region=REGION))
+            with open(self.folder / "swift.out", "ab") as log:
+                (self.folder / "memory_cache.py").write_text(CACHE)
+                command = [PYTHON, "-c", START, str(self.folder), *(f"{server}:{port}" for server, port in zip(SERVERS, self.inner))]
+                self.servers = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=log, stderr=log, env={**os.environ, "PYTHONPATH": str(self.folder)})
             for port in (*self.inner, self.port):
                 self.until_it_listens(port)
         except BaseException:
@@ -123,19 +159,13 @@ class SwiftStore:
         return self
 
     def __exit__(self, *_):
-        for server in self.servers.values():
-            server.send_signal(signal.SIGTERM)
-        for server in self.servers.values():
-            try:
-                server.wait(10)
-            except subprocess.TimeoutExpired:
-                server.kill()
-                server.wait()
+        if self.servers is None:
+            return
+        self.servers.stdin.close()
+        self.servers.wait()
 
-    def start(self, name, conf):
+    def write(self, name, conf):
         (self.folder / f"{name}-server.conf").write_text(conf)
-        with open(self.folder / f"{name}.out", "ab") as log:
-            self.servers[name] = subprocess.Popen([PYTHON, "-c", START, str(self.folder), f"{name}-server"], stdin=subprocess.DEVNULL, stdout=log, stderr=log)
 
     def until_it_listens(self, port):
         end = time.monotonic() + PATIENCE_S
@@ -144,19 +174,12 @@ class SwiftStore:
                 socket.create_connection(("127.0.0.1", port), 1).close()
                 return
             except OSError:
-                for name, server in self.servers.items():
-                    if server.poll() is not None:
-                        raise RuntimeError(f"{name} has ended: {self.logs()}") from None
+                if self.servers.poll() is not None:
+                    raise RuntimeError(f"a server of Swift has ended: {self.logs()}") from None
                 if time.monotonic() > end:
                     raise RuntimeError(f"a server of Swift doesn't listen: {self.logs()}") from None
                 time.sleep(0.05)
 
     def logs(self):
-        return "\n".join(f"--- {path.name}\n" + path.read_text(errors="replace")[-1500:] for path in sorted(self.folder.glob("*.out")))
+        return (self.folder / "swift.out").read_text(errors="replace")[-3000:]
 
-
-if __name__ == "__main__":
-    with tempfile.TemporaryDirectory() as place, SwiftStore(place) as store:
-        print(store.port, flush=True)
-        sys.stdin.readline()
-        print(store.logs())

@@ -1,0 +1,257 @@
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "base/progress.h"
+#include "ipc/store/receiving.h"
+#include "ipc/vault/fetch.h"
+#include "ipc/vault/objects.h"
+#include "ipc/vault/push.h"
+#include "tests/ipc/vault/memory_store.h"
+
+namespace prismesh::ipc::vault {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+
+class VaultTransfer : public ::testing::Test {
+ protected:
+  VaultTransfer() {
+    std::string name = (fs::temp_directory_path() / "vault-XXXXXX").string();
+    EXPECT_NE(::mkdtemp(name.data()), nullptr);
+    folder_ = name;
+    std::mt19937 dice(7);
+    for (std::size_t i = 0; i < large_.size(); ++i) large_[i] = static_cast<char>(dice());
+    write("main.k", "main");
+    write("parts/large.bin", large_);
+    write("parts/again.k", "main");
+    write("parts/empty.k", "");
+  }
+  ~VaultTransfer() override { fs::remove_all(folder_); }
+
+  void write(const std::string& path, const std::string& text) {
+    fs::create_directories((folder_ / "source" / path).parent_path());
+    std::ofstream(folder_ / "source" / path, std::ios::binary) << text;
+    std::erase_if(files_, [&](const store::LocalFile& file) { return file.path == path; });
+    files_.push_back({folder_ / "source" / path, path});
+  }
+  static std::string read(const fs::path& path) {
+    std::ostringstream text;
+    text << std::ifstream(path, std::ios::binary).rdbuf();
+    return text.str();
+  }
+  Result<VaultPushed> push(Vault vault, const std::string& name = "a name") const {
+    VaultPushOptions options;
+    options.name = name;
+    options.now_s = 1000;
+    return vault::push(vault, files_, "main.k", options);
+  }
+  Result<VaultFetched> fetch(Vault vault, const std::string& wanted = "a name") const {
+    return vault::fetch(vault, wanted, {folder_ / "back", {}});
+  }
+  void expect_back() const {
+    for (const store::LocalFile& file : files_) EXPECT_EQ(read(folder_ / "back" / file.path), read(file.disk)) << file.path;
+    EXPECT_FALSE(fs::exists(folder_ / "back.fetching"));
+  }
+
+  std::string large_ = std::string(kPieceBytes + 1000, '\0');
+  fs::path folder_;
+  std::vector<store::LocalFile> files_;
+  MemoryStore store_;
+};
+
+TEST_F(VaultTransfer, sends_each_piece_once_and_the_manifest_last) {
+  const Result<VaultPushed> pushed = push(store_.vault());
+  ASSERT_TRUE(pushed) << pushed.error().text();
+  EXPECT_EQ(pushed->pieces, 3u);
+  EXPECT_EQ(pushed->sent_pieces, 3u);
+  EXPECT_EQ(store_.count("PUT"), 6u) << "pieces, the list of the large file, the name, the manifest";
+  EXPECT_EQ(store_.requests().back().target, "/bucket/f/" + model_object(pushed->model.model));
+  for (const SeenRequest& request : store_.requests()) {
+    EXPECT_THAT(request.head, HasSubstr("x-amz-content-sha256: " + store::sha256(request.body).hex()));
+    EXPECT_THAT(request.head, HasSubstr("Authorization: AWS4-HMAC-SHA256 Credential=key/"));
+    EXPECT_THAT(request.head, HasSubstr("/here/s3/aws4_request"));
+  }
+  for (const auto& [key, bytes] : store_.objects()) {
+    if (key.starts_with("f/pieces/") || key.starts_with("f/models/")) {
+      EXPECT_EQ(store::sha256(bytes).hex(), key.substr(9));
+    }
+  }
+  ASSERT_TRUE(fetch(store_.vault()));
+  expect_back();
+  const Result<VaultPushed> again = push(store_.vault(), "another");
+  ASSERT_TRUE(again);
+  EXPECT_TRUE(again->was_there);
+  EXPECT_EQ(store_.count("PUT"), 7u) << "only the other name";
+}
+
+TEST_F(VaultTransfer, lists_go_on_where_they_are_cut) {
+  for (int i = 0; i < 5; ++i) {
+    write("main.k", "main " + std::to_string(i));
+    ASSERT_TRUE(push(store_.vault(), "model " + std::to_string(i)));
+  }
+  Vault vault = store_.vault();
+  const Result<std::vector<store::ModelRecord>> all = models(vault);
+  ASSERT_TRUE(all) << all.error().text();
+  EXPECT_EQ(all->size(), 5u);
+  store_.answer_instead([](const SeenRequest& request) -> std::optional<std::string> {
+    if (request.target.find("list-type") == std::string::npos) return std::nullopt;
+    return MemoryStore::answer(
+        "200 OK", "<ListBucketResult><IsTruncated>true</IsTruncated><NextContinuationToken>a</NextContinuationToken></ListBucketResult>");
+  });
+  EXPECT_THAT(models(vault).error().text(), HasSubstr("lists the same objects again and again"));
+}
+
+TEST_F(VaultTransfer, a_file_that_changes_is_not_sent) {
+  store_.answer_instead([this](const SeenRequest& request) -> std::optional<std::string> {
+    if (request.method == "HEAD") std::ofstream(folder_ / "source/main.k") << "other";
+    return std::nullopt;
+  });
+  const Result<VaultPushed> pushed = push(store_.vault());
+  ASSERT_FALSE(pushed);
+  EXPECT_THAT(pushed.error().text(), HasSubstr("changed while it was sent; push it again"));
+  EXPECT_TRUE(store_.objects().empty());
+}
+
+TEST_F(VaultTransfer, what_a_store_says_wrongly_is_refused) {
+  ASSERT_TRUE(push(store_.vault()));
+  struct Lie {
+    const char* of;  ///< part of the target
+    std::string answer;
+    const char* words;
+  };
+  const std::string other(4, 'x');
+  const std::vector<Lie> lies{
+      {"/pieces/", MemoryStore::answer("200 OK", other), "than its name says"},
+      {"/pieces/", MemoryStore::answer("200 OK", std::string(kPieceBytes + 1, 'x')), "an object is longer than it was"},
+      {"/models/", MemoryStore::answer("200 OK", std::string(store::kMaxManifestBytes + 1, 'x')), "an object is longer than it was"},
+      {"/models/", MemoryStore::answer("200 OK", "prismesh-set 1\n"), "gives other bytes for models/"},
+      {"/lists/", MemoryStore::answer("200 OK", "prismesh-pieces 1\n"), "parts/large.bin isn't taken"},
+      {"/lists/", MemoryStore::answer("200 OK", encode_pieces(std::vector{store::sha256("main"), store::sha256("main")})), "isn't right"},
+      {"/lists/", MemoryStore::refusal("404 No", "NoSuchKey"), "isn't there; push the model again"},
+      {"/pieces/", MemoryStore::refusal("404 No", "NoSuchKey"), "isn't there; push the model again"},
+      {"list-type", MemoryStore::answer("200 OK", "<html/>"), "is no list of objects"},
+      {"list-type", MemoryStore::refusal("404 No", "NoSuchBucket"), "there is no bucket 'bucket'"},
+      {"list-type", MemoryStore::refusal("403 No", "RequestTimeTooSkewed"), "clock"},
+      {"list-type", MemoryStore::refusal("400 No", "AuthorizationHeaderMalformed"), "another region"},
+      {"list-type", MemoryStore::answer("301 No", "", "Location: http://127.0.0.1:1/\r\n"), "another region or address (status 301)"},
+      {"list-type", MemoryStore::refusal("403 No", "AccessDenied"), "refuses these keys, or they may not do this (AccessDenied: words)"},
+      {"list-type", MemoryStore::answer("418 Tea", "no XML"), "status 418"},
+      {"list-type",
+       "HTTP/1.1 200 OK\r\n" +
+           [] {
+             std::string many;
+             for (int i = 0; i < 300; ++i) many += "X-" + std::to_string(i) + ": 1\r\n";
+             return many;
+           }() +
+           "\r\n",
+       "too many headers"},
+      {"list-type", "no HTTP\r\n\r\n", "the request failed"},
+  };
+  for (const Lie& lie : lies) {
+    store_.answer_instead([&lie](const SeenRequest& request) -> std::optional<std::string> {
+      if (request.target.find(lie.of) == std::string::npos) return std::nullopt;
+      return lie.answer;
+    });
+    const Result<VaultFetched> fetched = fetch(store_.vault(std::chrono::milliseconds(0)));
+    ASSERT_FALSE(fetched) << lie.words;
+    EXPECT_THAT(fetched.error().text(), HasSubstr(lie.words));
+    EXPECT_FALSE(fs::exists(folder_ / "back"));
+  }
+  store_.answer_instead({});
+  ASSERT_TRUE(fetch(store_.vault()));
+  expect_back();
+}
+
+TEST_F(VaultTransfer, a_list_of_other_pieces_is_noticed_at_the_end) {
+  ASSERT_TRUE(push(store_.vault()));
+  const std::string first = large_.substr(0, kPieceBytes), other(1000, 'y');
+  store_.put("f/" + piece_object(store::sha256(other)), other);
+  store_.put("f/" + list_object(store::sha256(large_)), encode_pieces(std::vector{store::sha256(first), store::sha256(other)}));
+  EXPECT_THAT(fetch(store_.vault()).error().text(), HasSubstr("parts/large.bin: is damaged in the store"));
+  EXPECT_FALSE(fs::exists(folder_ / "back"));
+  Vault vault = store_.vault();
+  const Result<Verified> verified = verify(vault, std::nullopt, {});
+  ASSERT_TRUE(verified);
+  ASSERT_EQ(verified->faults.size(), 1u);
+  EXPECT_EQ(verified->faults[0].object, list_object(store::sha256(large_)));
+  EXPECT_EQ(verified->faults[0].fault, "doesn't name the pieces of this file");
+}
+
+TEST_F(VaultTransfer, a_part_that_was_not_asked_for_is_refused) {
+  ASSERT_TRUE(push(store_.vault()));
+  store_.answer_instead([this](const SeenRequest& request) -> std::optional<std::string> {
+    if (request.target.find(store::sha256(large_.substr(0, kPieceBytes)).hex()) == std::string::npos) return std::nullopt;
+    if (request.head.find("Range: ") == std::string::npos)
+      return MemoryStore::answer("200 OK", large_.substr(0, kPieceBytes)).substr(0, 5000);
+    return MemoryStore::answer("206 Part", large_.substr(1, kPieceBytes), "Content-Range: bytes 1-9/10\r\n");
+  });
+  EXPECT_THAT(fetch(store_.vault()).error().text(), HasSubstr("another part of an object"));
+  // A store that knows no parts gives the whole.
+  store_.answer_instead([this](const SeenRequest& request) -> std::optional<std::string> {
+    if (request.target.find(store::sha256(large_.substr(0, kPieceBytes)).hex()) == std::string::npos) return std::nullopt;
+    const std::string whole = MemoryStore::answer("200 OK", large_.substr(0, kPieceBytes));
+    return request.head.find("Range: ") == std::string::npos ? whole.substr(0, 5000) : whole;
+  });
+  ASSERT_TRUE(fetch(store_.vault()));
+  expect_back();
+}
+
+TEST_F(VaultTransfer, tries_again_for_as_long_as_it_was_told) {
+  int left = 3;
+  store_.answer_instead([&left](const SeenRequest&) -> std::optional<std::string> {
+    return left-- > 0 ? std::optional(MemoryStore::refusal("503 No", "SlowDown")) : std::nullopt;
+  });
+  EXPECT_TRUE(push(store_.vault()));
+  store_.answer_instead([](const SeenRequest&) { return std::optional(MemoryStore::refusal("503 No", "SlowDown")); });
+  EXPECT_THAT(push(store_.vault(std::chrono::milliseconds(20))).error().text(), HasSubstr("can't answer now (status 503)"));
+  store_.answer_instead([](const SeenRequest& request) -> std::optional<std::string> {
+    if (request.method != "PUT") return std::nullopt;
+    return MemoryStore::refusal("400 No", "XAmzContentSHA256Mismatch");
+  });
+  write("main.k", "new");
+  const std::size_t before = store_.count("PUT");
+  EXPECT_THAT(push(store_.vault()).error().text(), HasSubstr("the line changes them"));
+  EXPECT_EQ(store_.count("PUT") - before, 3u);
+}
+
+TEST_F(VaultTransfer, stops_when_it_is_told) {
+  store_.answer_instead([](const SeenRequest&) { return std::optional(MemoryStore::refusal("503 No", "SlowDown")); });
+  std::atomic<bool> stops{false};
+  Vault vault = store_.vault(std::chrono::hours(1), [this, &stops] { return stops || store_.count("HEAD") > 2; });
+  VaultPushOptions options;
+  const Result<VaultPushed> pushed = vault::push(vault, files_, "main.k", options);
+  ASSERT_FALSE(pushed);
+  EXPECT_TRUE(is_cancelled(pushed.error()));
+}
+
+TEST_F(VaultTransfer, refuses_names_that_cannot_be_shown) {
+  EXPECT_THAT(push(store_.vault(), "a\x1b[2J").error().text(), HasSubstr("a model's name is text"));
+  EXPECT_THAT(push(store_.vault(), std::string(201, 'a')).error().text(), HasSubstr("at most 200 bytes"));
+  EXPECT_EQ(store_.requests().size(), 0u);
+}
+
+TEST_F(VaultTransfer, two_fetches_into_one_folder_do_not_mix) {
+  ASSERT_TRUE(push(store_.vault()));
+  std::string second;
+  store_.answer_instead([&](const SeenRequest& request) -> std::optional<std::string> {
+    if (request.target.find("/pieces/") != std::string::npos && second.empty()) {
+      // The store answers one request at a time: the other fetch must be refused before it asks for a piece.
+      const Result<store::Receiving> other = store::Receiving::begin(folder_ / "back", ".fetching");
+      second = other ? "begun" : other.error().text();
+    }
+    return std::nullopt;
+  });
+  ASSERT_TRUE(fetch(store_.vault()));
+  EXPECT_THAT(second, HasSubstr("another prismesh that fetches already runs here"));
+  expect_back();
+}
+
+}  // namespace
+}  // namespace prismesh::ipc::vault
