@@ -119,7 +119,7 @@ class Machine:
                 return text if check else (status, text)
         raise Gone(f"in the guest, {command!r} takes longer than {limit} s; it wrote {self.said.decode(errors='replace')!r}")
 
-    def wait_for_shell(self, limit=240):
+    def wait_for_shell(self, limit=900):
         end = time.time() + limit
         while time.time() < end:
             try:

@@ -81,18 +81,17 @@ def press(mouse, button):
 
 
 class Shape:
-    """Where the lines of a picture are: the middle and the spread of its steep places."""
+    """Where the model is in a picture: the middle and the number of coloured pixels of the view, whose ground is grey."""
     def __init__(self, picture):
         width, height = picture.size
-        green = picture.bytes[1::3]
-        count = sum_x = sum_y = squares = 0
-        for y in range(0, height):
-            row = green[y * width:(y + 1) * width]
-            for x in range(0, width - 1):
-                if abs(row[x] - row[x + 1]) > 24:
-                    count, sum_x, sum_y, squares = count + 1, sum_x + x, sum_y + y, squares + x * x + y * y
-        self.x, self.y = sum_x / count, sum_y / count
-        self.spread = (squares / count - self.x ** 2 - self.y ** 2) ** 0.5
+        self.pixels = sum_x = sum_y = 0
+        for y in range(round(0.07 * height), round(0.88 * height)):
+            for x in range(round(0.14 * width), round(0.68 * width)):
+                at = 3 * (y * width + x)
+                red, green, blue = picture.bytes[at:at + 3]
+                if max(red, green, blue) - min(red, green, blue) > 24:
+                    self.pixels, sum_x, sum_y = self.pixels + 1, sum_x + x, sum_y + y
+        self.x, self.y = sum_x / self.pixels, sum_y / self.pixels
 
 
 def push(guest, mouse, report, before, name):
@@ -107,11 +106,13 @@ def push(guest, mouse, report, before, name):
 
 def positions(deck):
     """Of the selected nodes, by number."""
-    found = {}
+    found, keyword = {}, ""
     for line in deck.decode().splitlines():
-        if re.match(r"^ *50000\d\d +-?\d+\.\d", line):
+        if line.startswith("*"):
+            keyword = line.strip()
+        elif keyword == "*NODE" and not line.startswith("$") and int(line[:8]) in SELECTED:
             found[int(line[:8])] = tuple(float(line[8 + 16 * axis:24 + 16 * axis]) for axis in range(3))
-    return {node: found[node] for node in SELECTED if node in found}
+    return found
 
 
 def space_mouse(proof, guest, programs, out):
@@ -121,13 +122,14 @@ def space_mouse(proof, guest, programs, out):
         guest.run(f"prismesh sample --elements 2000 -o {DECK} >/dev/null && chgrp prismesh {DECK} && chmod 664 {DECK}")
         session(guest, f"open {DECK}", limit=120)
         mouse.do("plug")
-        guest.wait_until("test -e /dev/hidraw0", 60)
-        # udev's rule follows the node at once.
-        guest.wait_until("udevadm settle; [ \"$(stat -c '%G %a' /dev/hidraw0)\" = 'prismesh 660' ]", 60)
-        said = guest.run("cat /sys/class/hidraw/hidraw0/device/uevent; stat -c '%U:%G %a' /dev/hidraw0; udevadm info -q property /dev/hidraw0")
+        # The machine's tablet and keyboard are HID devices too.
+        guest.wait_until("grep -l SpaceNavigator /sys/class/hidraw/*/device/uevent", 90)
+        name = guest.run("cd /sys/class/hidraw; for h in *; do ! grep -q SpaceNavigator $h/device/uevent || echo $h; done").strip()
+        guest.run("udevadm settle", limit=60)
+        said = guest.run(f"cat /sys/class/hidraw/{name}/device/uevent; stat -c '%U:%G %a' /dev/{name}; stat -c '%n %U:%G %a' /dev/hidraw*")
         proof.check("the kernel takes the SpaceMouse for a HID device by the names that it gives", "HID_NAME=3Dconnexion SpaceNavigator" in said, said)
         proof.check("the udev rule opens it to the group prismesh", "root:prismesh 660" in said, said)
-        guest.wait_until("ls -l /proc/$(systemctl show -P MainPID prismesh-kiosk)/fd | grep -q hidraw0", 60)
+        guest.wait_until("ls -l /proc/$(systemctl show -P MainPID prismesh-kiosk)/fd | grep -q /dev/hidraw", 120)
         proof.check("the kiosk's unit opens it, as the user prismesh-kiosk", guest.run("stat -c %U /proc/$(systemctl show -P MainPID prismesh-kiosk)").strip() == "prismesh-kiosk")
         rest = settled(guest, "space-rest")
         proof.check("it listens to the device", mouse.state()["listened"] == "1", str(mouse.state()))
@@ -137,8 +139,8 @@ def space_mouse(proof, guest, programs, out):
         for number, (what, report, holds) in enumerate((
                 ("to the right moves the picture there", f"send 01 {words(220, 0, 0)}", lambda now: now.x > first.x + 5 and abs(now.y - first.y) < abs(now.x - first.x) / 2),
                 ("up moves it up", f"send 01 {words(0, 0, -220)}", lambda now: now.y < first.y - 5 and abs(now.x - first.x) < abs(now.y - first.y) / 2),
-                ("toward the user makes it larger", f"send 01 {words(0, 220, 0)}", lambda now: now.spread > first.spread * 1.02),
-                ("away makes it smaller", f"send 01 {words(0, -220, 0)}", lambda now: now.spread < first.spread * 0.98))):
+                ("toward the user makes it larger", f"send 01 {words(0, 220, 0)}", lambda now: now.pixels > first.pixels * 1.05),
+                ("away makes it smaller", f"send 01 {words(0, -220, 0)}", lambda now: now.pixels < first.pixels * 0.95))):
             shown = push(guest, mouse, report, rest, f"space-{number}")
             shown.save(out / f"space-{number}.png")
             now = Shape(shown)
@@ -165,12 +167,12 @@ def space_mouse(proof, guest, programs, out):
         mouse.do(f"send 01 {words(0, 0, 220)}")
         changes(guest, shown, "space-pulled")
         mouse.do("unplug")
-        guest.wait_until("! ls -l /proc/$(systemctl show -P MainPID prismesh-kiosk)/fd | grep -q hidraw", 60)
+        guest.wait_until("! ls -l /proc/$(systemctl show -P MainPID prismesh-kiosk)/fd | grep -q /dev/hidraw", 120)
         settled(guest, "space-gone", quiet=8)
         proof.check("unplugged in the middle of a move, it is closed and the selection goes back", state(guest) == moved, state(guest))
 
         mouse.do("plug")
-        guest.wait_until("ls -l /proc/$(systemctl show -P MainPID prismesh-kiosk)/fd | grep -q hidraw", 60)
+        guest.wait_until("ls -l /proc/$(systemctl show -P MainPID prismesh-kiosk)/fd | grep -q /dev/hidraw", 120)
         proof.check("plugged in again, it is opened again", True)
         back = settled(guest, "space-back", quiet=8)
         push(guest, mouse, f"send 01 {words(-220, 0, 0)}", back, "space-again")
@@ -202,7 +204,8 @@ def wait_for_pen(guest, what, limit):
 
 
 def falcon(proof, guest, programs, out):
-    guest.run("systemctl stop prismesh-kiosk; systemctl start prismesh-pen.socket; systemctl restart prismesh-pen")
+    guest.wait_until("[ $(systemctl is-active multi-user.target) = active ]", 300)
+    guest.run("systemctl stop prismesh-kiosk", limit=180)
     device = UsbDevice(programs, "falcon", socket_path(out, "falcon"))
     try:
         said = wait_for_pen(guest, "there is no such device", 60)
@@ -255,7 +258,8 @@ def main():
         subprocess.run([f"{arguments.programs}/vm_usb_device", "firmware", firmware], check=True)
         patience = {f"/etc/systemd/system/prismesh-{name}.service.d/patience.conf": PATIENCE for name in ("modeld", "deviced", "kiosk", "pen")}
         prepare(arguments.image, disk, {**AGENT, **patience, "/etc/prismesh/prismesh.toml": SETTINGS, "/etc/prismesh/falcon.bin": firmware.read_bytes(),
-                                        "/etc/systemd/system/prismesh-kiosk.service.d/eyes.conf": KIOSK})
+                                        **({"/etc/systemd/system/prismesh-kiosk.service": "-> /dev/null"} if arguments.only == "falcon" else
+                                           {"/etc/systemd/system/prismesh-kiosk.service.d/eyes.conf": KIOSK})})
         guest = machine(out, disk, "usb", more=more)
         guest.wait_for_shell()
         for name, part in (("space-mouse", space_mouse), ("falcon", falcon)):
