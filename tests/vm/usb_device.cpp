@@ -165,7 +165,7 @@ class Falcon final : public Device {
     std::ostringstream text;
     text << "runs=" << device_->runs() << " homed=" << int{device_->homed()}
          << " loaded=" << (device_->loaded() == falcon::pretended_firmware(kWords)) << " packets=" << packets_ << " forces=" << forces_
-         << " grip=" << device_->pen().position_mm().transpose();
+         << " last_is_zero=" << last_is_zero_ << " grip=" << device_->pen().position_mm().transpose();
     return text.str();
   }
   std::string command(const std::string& name, std::istream&) override {
@@ -192,11 +192,12 @@ class Falcon final : public Device {
         },
         [this](std::int64_t, const falcon::ForcePacket& packet) {
           ++packets_;
-          forces_ += packet.motors != std::array<std::int16_t, 3>{} ? 1 : 0;
+          last_is_zero_ = packet.motors == std::array<std::int16_t, 3>{};
+          forces_ += last_is_zero_ ? 0 : 1;
         });
   }
   Description made_;
-  bool pumps_ = true;
+  bool pumps_ = true, last_is_zero_ = true;
   int packets_ = 0, forces_ = 0;
   std::unique_ptr<falcon::SimulatedFalcon> device_;
 };
