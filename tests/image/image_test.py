@@ -106,7 +106,7 @@ class Dhcp(threading.Thread):
 def network(root, folder):
     """Starts the root once more, with a site's wrong network settings and faulty firewall, on a network that has DHCP."""
     (root / "etc/systemd/network").mkdir(exist_ok=True)
-    (root / "etc/systemd/network/10-site.network").write_text("[Match]\nName=eth9\n[Network]\nAddress=192.0.2.50/24\n")
+    (root / "etc/systemd/network/10-site.network").write_text("[Match]\nName=host0\n[Network]\nAddress=198.51.100.5/24\nGateway=198.51.100.1\n")
     (root / "etc/nftables.conf").write_text("table inet station { chain input { typo } }\n")
     script = root / "usr/lib/prismesh/network"
     script.write_text(script.read_text().replace("patience=60", "patience=6"))

@@ -16,8 +16,9 @@ class Gone(Exception):
 
 
 class Machine:
-    def __init__(self, folder, disk, boot=(), size=(1280, 720), snapshot=True, devices=(None, None), memory_mb=2048, processors=2, log=None):
-        """boot: further QEMU arguments, for example a kernel. devices: for the two adapters, the path of a pseudo-terminal or None."""
+    def __init__(self, folder, disk, boot=(), size=(1280, 720), snapshot=True, devices=(None, None), memory_mb=2048, processors=2, log=None, more=()):
+        """boot: further QEMU arguments, for example a kernel. devices: for the two adapters, the path of a pseudo-terminal or None. more: QEMU arguments that
+        need the USB bus."""
         self.folder = str(folder)
         os.makedirs(self.folder, exist_ok=True)
         self.console_text = []
@@ -40,6 +41,7 @@ class Machine:
         for number, device in enumerate(devices):
             if device:
                 arguments += ["-chardev", f"serial,id=line{number},path={device}", "-device", f"usb-serial,chardev=line{number},serial=T{number}"]
+        arguments += more
         self.process = subprocess.Popen(arguments, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
         threading.Thread(target=self._read_console, daemon=True).start()
         self.qmp = self._connect("qmp").makefile("rw")
@@ -117,7 +119,7 @@ class Machine:
                 return text if check else (status, text)
         raise Gone(f"in the guest, {command!r} takes longer than {limit} s; it wrote {self.said.decode(errors='replace')!r}")
 
-    def wait_for_shell(self, limit=240):
+    def wait_for_shell(self, limit=900):
         end = time.time() + limit
         while time.time() < end:
             try:

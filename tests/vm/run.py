@@ -33,8 +33,10 @@ baud = 57600
 """
 FIXED_EYES = """[Service]
 ExecStart=
-ExecStart=/usr/bin/prismesh-kiosk --runtime-dir /run/prismesh --fullscreen --eye 0,0,650 --profile prism-mask-columns
+ExecStart=/usr/bin/prismesh-kiosk --runtime-dir /run/prismesh --fullscreen --eye 0,0,650 --profile prism-mask-columns --trace
 """
+AGENT = {"/var/lib/test/agent.sh": (HERE / "agent.sh").read_text(), "/etc/systemd/system/agent.service": (HERE / "agent.service").read_text(),
+         "/etc/systemd/system/multi-user.target.wants/agent.service": "-> ../agent.service"}
 KIOSK = "prismesh-kiosk --runtime-dir /run/prismesh"
 
 
@@ -89,7 +91,7 @@ def partition(disk, name):
 
 
 def prepare(image, disk, files):
-    """Copies the image and gives it a data partition with these files, by path below /etc and /var: their text, or "-> " and a link's target.
+    """Copies the image and gives it a data partition with these files, by path below /etc and /var: their text, bytes, or "-> " and a link's target.
     The root can't be changed: a station's own settings come in the same way. Needs root, whose files they are."""
     subprocess.run(["cp", "--sparse=always", image, disk], check=True)
     folder = pathlib.Path(disk).parent / "data"
@@ -100,7 +102,9 @@ def prepare(image, disk, files):
     for path, text in files.items():
         at = folder / path.lstrip("/")
         at.parent.mkdir(parents=True, exist_ok=True)
-        if text.startswith("-> "):
+        if isinstance(text, bytes):
+            at.write_bytes(text)
+        elif text.startswith("-> "):
             at.symlink_to(text[3:])
         else:
             at.write_text(text)
@@ -109,13 +113,13 @@ def prepare(image, disk, files):
                     str(size // 4096)], check=True)
 
 
-def machine(out, disk, name, devices=(None, None), snapshot=False):
+def machine(out, disk, name, devices=(None, None), snapshot=False, more=()):
     variables = out / "OVMF_VARS.fd"
     shutil.copy("/usr/share/OVMF/OVMF_VARS_4M.fd", variables)
     firmware = ["-drive", "if=pflash,format=raw,readonly=on,file=/usr/share/OVMF/OVMF_CODE_4M.fd", "-drive",
                 f"if=pflash,format=raw,file={variables}"]
     console = open(out / f"{name}.console", "w")
-    return Machine(out, disk, boot=firmware, size=SIZE, devices=devices, snapshot=snapshot,
+    return Machine(out, disk, boot=firmware, size=SIZE, devices=devices, snapshot=snapshot, more=more,
                    log=lambda text: print(text, file=console, flush=True))
 
 
@@ -193,9 +197,10 @@ def shows(proof, guest, bare_s):
 def same_picture(proof, out, guest):
     guest.run(f"cp /usr/share/doc/prismesh/sample.k {DECK} 2>/dev/null || prismesh sample --elements 2000 -o {DECK} >/dev/null")
     guest.run(f"chgrp prismesh {DECK} && chmod 664 {DECK}")
-    empty = settled(guest, "empty")
+    settled(guest, "empty")
     session(guest, f"open {DECK}", limit=120)
-    changes(guest, empty, "opened")
+    # The status line changes long before the model is drawn.
+    guest.wait_until("journalctl -b -o cat --no-pager -u prismesh-kiosk | grep -qE '^picture [0-9]+ generation [0-9]'", 300)
     shown = settled(guest, "opened")
     shown.save(out / "opened.png")
     guest.run("mkdir -p /tmp/shots && chown prismesh-kiosk /tmp/shots")
@@ -262,8 +267,7 @@ def main():
     out = pathlib.Path(arguments.out).absolute()
     out.mkdir(parents=True, exist_ok=True)
     proof = Proof()
-    agent = {"/var/lib/test/agent.sh": (HERE / "agent.sh").read_text(), "/etc/systemd/system/agent.service": (HERE / "agent.service").read_text(),
-             "/etc/systemd/system/multi-user.target.wants/agent.service": "-> ../agent.service"}
+    agent = AGENT
     patience = {f"/etc/systemd/system/prismesh-{name}.service.d/patience.conf": PATIENCE for name in ("modeld", "deviced", "kiosk")}
     devices = subprocess.Popen([f"{arguments.programs}/vm_devices"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
     ports = dict(devices.stdout.readline().split() for _ in range(2))
