@@ -1,5 +1,6 @@
 #include "kiosk/app.h"
 
+#include <chrono>
 #include <cstdio>
 #include <fstream>
 #include <iterator>
@@ -7,11 +8,14 @@
 
 #include "base/supervisor.h"
 #include "drivers/settings/settings.h"
+#include "ipc/intake/client.h"
+#include "ipc/setup/client.h"
 #include "kiosk/calibrator.h"
 #include "kiosk/display/headless.h"
 #include "kiosk/headless_kiosk.h"
 #include "kiosk/open_window.h"
 #include "kiosk/render/offscreen.h"
+#include "kiosk/setup_screen.h"
 #include "kiosk/station.h"
 #include "kiosk/tools/exhibition/show_script.h"
 #include "kiosk/windowed_kiosk.h"
@@ -33,20 +37,6 @@ WindowOptions window_options(const AppOptions& options, const drivers::settings:
   return window;
 }
 
-Result<void> run_in_window(const WindowOptions& options, const StationOptions& what) {
-  MonotonicClock clock;
-  Result<std::unique_ptr<display::Window>> window = open_window(options, clock);
-  if (!window) return fail(window.error());
-  for (;;) {
-    Result<std::unique_ptr<Station>> station = Station::create(what);
-    if (!station) return fail(station.error());
-    if (Result<void> run = WindowedKiosk(**window, **station).run(); !run) return run;
-    if (!(*station)->editor.context().anew) return {};
-    (*window)->set_clipboard({});
-    (*window)->set_fullscreen(options.fullscreen);
-  }
-}
-
 Result<std::optional<toolkit::ExhibitionOptions>> exhibition_of(const drivers::settings::ExhibitionSettings& settings) {
   if (settings.deck.empty()) return std::optional<toolkit::ExhibitionOptions>();
   toolkit::ExhibitionOptions exhibition;
@@ -65,10 +55,18 @@ Result<std::optional<toolkit::ExhibitionOptions>> exhibition_of(const drivers::s
   return exhibition;
 }
 
-/// Calibrates the display that the window covers.
-Result<void> run_calibration(const AppOptions& options, const WindowOptions& where, const StationOptions& what) {
+/// Calibrates the display that the window covers. Returns the profile's file, or nothing.
+Result<std::optional<std::filesystem::path>> calibrate(const AppOptions& options, display::Window& window, Station& station,
+                                                       const stereo::Profile& profile) {
   Result<SaveTo> save_to = usual_place(options.config);
   if (!save_to) return fail(save_to.error());
+  auto calibrator = Calibrator::create(window, station, profile, std::move(*save_to));
+  if (!calibrator) return fail(calibrator.error());
+  return (*calibrator)->run();
+}
+
+Result<void> run_calibration(const AppOptions& options, const WindowOptions& where, const StationOptions& what) {
+  if (const Result<SaveTo> save_to = usual_place(options.config); !save_to) return fail(save_to.error());
   if (!what.profile.stereo())
     return fail("--calibrate",
                 "the profile \"" + what.profile.name +
@@ -79,9 +77,7 @@ Result<void> run_calibration(const AppOptions& options, const WindowOptions& whe
   Result<std::unique_ptr<Station>> station = Station::create(what);
   if (!station) return fail(station.error());
   (*station)->place((*window)->monitor(), (*window)->position());
-  auto calibrator = Calibrator::create(**window, **station, what.profile, std::move(*save_to));
-  if (!calibrator) return fail(calibrator.error());
-  const Result<std::optional<std::filesystem::path>> saved = (*calibrator)->run();
+  const Result<std::optional<std::filesystem::path>> saved = calibrate(options, **window, **station, what.profile);
   if (!saved) return fail(saved.error());
   if (*saved)
     std::printf("The calibration is saved in %s, and prismesh.toml names it.\n", (*saved)->c_str());
@@ -100,16 +96,25 @@ Result<void> run_headless(const AppOptions& options, const StationOptions& what)
   return HeadlessKiosk(options, **station, *target).run();
 }
 
-Result<void> run(const AppOptions& options) {
+/// What the settings say, as they are now.
+struct Settled {
+  StationOptions what;
+  drivers::settings::DisplaySettings display;
+  std::string profile;  ///< a name or a file
+};
+
+Result<Settled> settle(const AppOptions& options) {
   const Result<drivers::settings::StationSettings> settings = drivers::settings::read_settings(options.config);
   if (!settings) return fail(settings.error());
+  Settled settled;
+  settled.display = settings->display;
   // A machine that no settings say anything of has an ordinary screen.
-  const std::string profile_name = options.profile.value_or(settings->files.empty() ? "mono" : settings->display.profile);
-  const Result<stereo::Profile> profile = stereo::find_profile(profile_name);
+  settled.profile = options.profile.value_or(settings->files.empty() ? "mono" : settings->display.profile);
+  const Result<stereo::Profile> profile = stereo::find_profile(settled.profile);
   if (!profile) return fail(profile.error());
   Result<input::MouseLayout> mouse = input::find_mouse_layout(settings->hand.mouse);
   if (!mouse) return fail(mouse.error());
-  StationOptions what;
+  StationOptions& what = settled.what;
   what.mouse = std::move(*mouse);
   what.runtime_dir = options.runtime_dir;
   what.deck = options.deck;
@@ -120,16 +125,84 @@ Result<void> run(const AppOptions& options) {
   what.follows_others = options.follow;
   what.title = options.title;
   what.trace = options.trace;
-  if (!options.calibrate) {
-    Result<std::optional<toolkit::ExhibitionOptions>> exhibition = exhibition_of(settings->exhibition);
-    if (!exhibition) return fail(exhibition.error());
-    what.exhibition = std::move(*exhibition);
-    if (what.exhibition) what.deck.reset();  // it is opened as it lies on the disk, without edits of earlier visits
+  what.reads_space_mice = !options.calibrate && options.headless_frames == 0;
+  if (options.calibrate) return settled;
+  Result<std::optional<toolkit::ExhibitionOptions>> exhibition = exhibition_of(settings->exhibition);
+  if (!exhibition) return fail(exhibition.error());
+  what.exhibition = std::move(*exhibition);
+  if (what.exhibition) what.deck.reset();  // it is opened as it lies on the disk, without edits of earlier visits
+  return settled;
+}
+
+/// The station as it is set up; nothing: this machine isn't set up from the kiosk, or says nothing now.
+std::optional<ipc::StationSetup> ask_for_setup(const AppOptions& options) {
+  constexpr std::chrono::seconds kPatience{3};
+  const std::filesystem::path socket = ipc::setup_socket_path(options.runtime_dir);
+  std::error_code none;
+  if (!std::filesystem::exists(socket, none)) return std::nullopt;
+  Result<ipc::SetupAnswer> answer = ipc::ask_setup(socket, ipc::GetSetup{}, kPatience);
+  if (!answer) std::fprintf(stderr, "the station's set-up: %s\n", answer.error().text().c_str());
+  auto* station = answer ? std::get_if<ipc::StationSetup>(&*answer) : nullptr;
+  return station != nullptr ? std::optional(std::move(*station)) : std::nullopt;
+}
+
+/// Leads through the set-up in the window.
+Result<SetupScreen::End> run_setup(const AppOptions& options, display::Window& window, const Settled& settled,
+                                   const ipc::StationSetup& station_setup) {
+  constexpr std::int64_t kExhibitionIdleNs = 600'000'000'000;  ///< as an unlocked exhibition
+  StationOptions what = settled.what;
+  what.reads_space_mice = false;
+  Result<std::unique_ptr<Station>> station = Station::create(what);
+  if (!station) return fail(station.error());
+  (*station)->place(window.monitor(), window.position());
+  SetupOptions setup;
+  setup.socket = ipc::setup_socket_path(options.runtime_dir);
+  setup.intake = ipc::intake_socket_path(options.runtime_dir);
+  setup.station = station_setup;
+  setup.profile = settled.profile;
+  if (what.exhibition) setup.idle_ns = kExhibitionIdleNs;
+  if (const auto usual = drivers::settings::usual_files(); usual.size() > 1) setup.own_settings = usual.back();
+  setup.calibrate = [&](const stereo::Profile& profile) { return calibrate(options, window, **station, profile); };
+  auto screen = SetupScreen::create(window, **station, std::move(setup));
+  if (!screen) return fail(screen.error());
+  return (*screen)->run();
+}
+
+Result<void> run_in_window(const AppOptions& options, Settled settled) {
+  MonotonicClock clock;
+  std::optional<ipc::StationSetup> setup = ask_for_setup(options);
+  // Visitors don't set a station up; whoever knows the PIN can.
+  if (setup && (!setup->due || settled.what.exhibition)) setup.reset();
+  const WindowOptions where = window_options(options, settled.display);
+  Result<std::unique_ptr<display::Window>> window = open_window(where, clock);
+  if (!window) return fail(window.error());
+  for (;;) {
+    if (setup) {
+      const Result<SetupScreen::End> end = run_setup(options, **window, settled, *setup);
+      if (!end) return fail(end.error());
+      if (*end == SetupScreen::End::closed) return {};
+      Result<Settled> changed = settle(options);
+      if (!changed) return fail(changed.error());
+      settled = std::move(*changed);
+      setup.reset();
+    }
+    Result<std::unique_ptr<Station>> station = Station::create(settled.what);
+    if (!station) return fail(station.error());
+    if (Result<void> run = WindowedKiosk(**window, **station).run(); !run) return run;
+    const toolkit::ToolContext& context = (*station)->editor.context();
+    if (!context.anew) return {};
+    if (context.sets_up) setup = ask_for_setup(options);
+    (*window)->set_clipboard({});
+    (*window)->set_fullscreen(options.fullscreen);
   }
-  if (options.headless_frames > 0) return run_headless(options, what);
-  what.reads_space_mice = !options.calibrate;
-  const WindowOptions window = window_options(options, settings->display);
-  return options.calibrate ? run_calibration(options, window, what) : run_in_window(window, what);
+}
+
+Result<void> run(const AppOptions& options) {
+  Result<Settled> settled = settle(options);
+  if (!settled) return fail(settled.error());
+  if (options.headless_frames > 0) return run_headless(options, settled->what);
+  if (options.calibrate) return run_calibration(options, window_options(options, settled->display), settled->what);
+  return run_in_window(options, std::move(*settled));
 }
 
 }  // namespace

@@ -68,8 +68,10 @@ Result<std::optional<std::filesystem::path>> Calibrator::run() {
     station_.look();
     if (!wizard_) begin_when_ready();
     if (std::string refused = station_.devices.take_refusal(); !refused.empty()) trouble_ = std::move(refused);
+    watch_.turn(station_.clock.now_ns(), true);
     if (Result<void> drawn = draw(); !drawn) return fail(drawn.error());
     window_.present();
+    watch_.shown();
     wait();
   }
   station_.devices.release_mask();

@@ -12,6 +12,7 @@
 #include "kiosk/display/window.h"
 #include "kiosk/panels/gui.h"
 #include "kiosk/panels/wizard_panel.h"
+#include "kiosk/picture_watch.h"
 #include "kiosk/render/renderer.h"
 #include "kiosk/station.h"
 
@@ -63,6 +64,7 @@ class Calibrator {
   std::string traced_;
   std::optional<input::Pixel> pointer_;
   std::optional<std::filesystem::path> saved_;
+  PictureWatch watch_{reports_to_supervisor()};  ///< a station's set-up calls the calibration under systemd
   bool left_ = false;
 };
 

@@ -1,6 +1,8 @@
 #include "kiosk/editor.h"
 
 #include <algorithm>
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
@@ -190,9 +192,19 @@ void Editor::own_command(std::uint8_t number) {
     case EditorCommand::deck_warnings:
       if (context_.shown.snapshot) toggle_cover(Cover::warnings);
       break;
+    case EditorCommand::set_up: set_up(); break;
     case EditorCommand::fullscreen:
     case EditorCommand::rearm: break;
   }
+}
+
+/// In the same window, which then comes back here.
+void Editor::set_up() {
+  std::error_code none;
+  if (context_.options.setup.empty() || !std::filesystem::exists(context_.options.setup, none))
+    return notices_.say(Notice::Kind::information,
+                        "This machine isn't set up from the kiosk: that is the appliance's (docs/appliance.md).");
+  context_.quits = context_.anew = context_.sets_up = true;
 }
 
 void Editor::open_menu(const Pointer& pointer) {

@@ -100,6 +100,7 @@ class Editor {
  private:
   void tell_video_memory();
   void take_newest();
+  void set_up();
   void own_command(std::uint8_t number);
   void toggle_cover(toolkit::Cover cover);
   void open_menu(const toolkit::Pointer& pointer);

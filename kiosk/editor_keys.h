@@ -21,7 +21,8 @@ enum class EditorCommand : std::uint8_t {
   fullscreen,
   menu,
   help,
-  menu_at_pointer
+  menu_at_pointer,
+  set_up
 };
 
 constexpr input::Command command_of(EditorCommand command) { return {kEditorName, static_cast<std::uint8_t>(command)}; }
@@ -45,6 +46,8 @@ inline constexpr std::array kCancelKeys = {
 };
 
 inline constexpr std::array kWindowKeys = {
+    input::KeyBinding{display::Key::f12, false, false, command_of(EditorCommand::set_up), input::Menu::display, "F12",
+                      "set the station up: name, network, display, time"},
     input::KeyBinding{display::letter('R'), true, false, command_of(EditorCommand::rearm), input::Menu::display, "Ctrl+R",
                       "try the prism mask again after it was stuck"},
     input::KeyBinding{display::Key::f11, false, false, command_of(EditorCommand::fullscreen), input::Menu::display, "F11",

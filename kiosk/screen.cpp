@@ -1,9 +1,6 @@
 #include "kiosk/screen.h"
 
-#include <algorithm>
 #include <utility>
-
-#include <fmt/format.h>
 
 namespace prismesh::kiosk {
 
@@ -33,23 +30,8 @@ Result<void> Screen::lay_out() {
   const panels::Place room = layout.view();
   editor_.set_room({room.x, room.y, room.right(), room.bottom()});
   for (const std::function<void()>& action : layout.actions) editor_.panel_action(action);
-  if (editor_.context().trace.on()) trace_items(std::move(layout.items));
+  items_.tell(editor_.context().trace, std::move(layout.items));
   return {};
-}
-
-/// Tells which items have come, changed or gone.
-void Screen::trace_items(std::vector<panels::ScreenItem> items) {
-  const notices::Trace& trace = editor_.context().trace;
-  std::ranges::sort(items, {}, &panels::ScreenItem::name);
-  for (const panels::ScreenItem& item : items)
-    if (!std::ranges::binary_search(traced_, item.name, {}, &panels::ScreenItem::name) ||
-        *std::ranges::lower_bound(traced_, item.name, {}, &panels::ScreenItem::name) != item)
-      trace.line(fmt::format("item \"{}\" {:.0f} {:.0f} {:.0f} {:.0f} {}", item.name, item.place.x, item.place.y, item.place.width,
-                             item.place.height, item.state));
-  for (const panels::ScreenItem& item : traced_)
-    if (!std::ranges::binary_search(items, item.name, {}, &panels::ScreenItem::name))
-      trace.line(fmt::format("item \"{}\" gone", item.name));
-  traced_ = std::move(items);
 }
 
 Result<void> Screen::draw(unsigned framebuffer, const std::optional<input::Pixel>& pointer, Pace pace) {

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "kiosk/editor.h"
+#include "kiosk/item_trace.h"
 #include "kiosk/panel_arrangement.h"
 #include "kiosk/panels/gui.h"
 
@@ -30,8 +31,6 @@ class Screen {
   Result<bool> draw_piece(std::int64_t budget_ns);
 
  private:
-  void trace_items(std::vector<panels::ScreenItem> items);
-
   panels::Gui gui_;
   std::vector<input::MouseBinding> mouse_;  ///< what the mouse does, in words
   PanelArrangement panels_;
@@ -39,7 +38,7 @@ class Screen {
   display::PixelSize size_{1, 1};
   std::optional<input::Pixel> pointer_;
   std::int64_t laid_out_ns_ = 0;
-  std::vector<panels::ScreenItem> traced_;
+  ItemTrace items_;
 };
 
 }  // namespace prismesh::kiosk

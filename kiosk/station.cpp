@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/clock.h"
+#include "ipc/setup/client.h"
 #include "kiosk/display/link_check.h"
 #include "kiosk/editor_keys.h"
 #include "kiosk/toolkit/history_file.h"
@@ -38,12 +39,14 @@ toolkit::ToolOptions tool_options(const StationOptions& options) {
     tools.exhibition->tries = state_file("pin-tries");
     tools.exhibition->leave = tools::files::quit_command();
     tools.exhibition->fullscreen = command_of(EditorCommand::fullscreen);
+    tools.exhibition->set_up = command_of(EditorCommand::set_up);
   } else {
     tools.expressions = state_file("expressions");
     tools.commands_used = state_file("commands");
     tools.decks_opened = state_file("decks");
     tools.intake = ipc::intake_socket_path(options.runtime_dir);
   }
+  tools.setup = ipc::setup_socket_path(options.runtime_dir);
   tools.follows_others = options.follows_others;
   tools.title = options.title;
   tools.fit = ::prismesh::kiosk::tools::view::command_of(::prismesh::kiosk::tools::view::ViewCommand::fit);

@@ -84,12 +84,14 @@ struct ExhibitionOptions {
   std::filesystem::path tries;  ///< where wrong PINs are kept; empty: nowhere
   input::Command leave;         ///< asks for the PIN
   input::Command fullscreen;    ///< does nothing
+  input::Command set_up;        ///< is refused until the PIN is given
 };
 
 struct ToolOptions {
   std::filesystem::path expressions{};    ///< file of the entered expressions; empty: none
   std::filesystem::path commands_used{};  ///< file of the commands that were found; empty: none
   std::filesystem::path decks_opened{};   ///< file of the decks that were opened; empty: none
+  std::filesystem::path setup{};          ///< socket of prismesh-setup, which sets the station up; empty: none
   std::filesystem::path intake{};         ///< socket of prismesh-intake, whose models can be opened; empty: none
   bool follows_others = false;            ///< moves together with other kiosks that do
   std::string title{};                    ///< shown where no tool guides the user
@@ -121,6 +123,7 @@ struct ToolContext {
   bool keeps_apart = false;            ///< edits make no new contact
   bool quits = false;                  ///< the window closes
   bool anew = false;                   ///< and everything is made anew in it
+  bool sets_up = false;                ///< after the station's set-up
   bool follow_soon = false;            ///< follow at the next turn, even if the server says nothing
 };
 

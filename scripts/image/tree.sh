@@ -36,7 +36,7 @@ chroot "$root" passwd --quiet --lock root
 # --- what runs ---
 units() { chroot "$root" systemctl --quiet "$@"; }
 units enable prismesh.target seatd.service nftables.service systemd-networkd.service systemd-timesyncd.service \
-  tmp.mount prismesh-identity.service prismesh-network.service prismesh-lockdown.service prismesh-ssh.service prismesh-notice.service prismesh-update-confirm.service
+  tmp.mount prismesh-setup.socket prismesh-identity.service prismesh-network.service prismesh-lockdown.service prismesh-ssh.service prismesh-notice.service prismesh-update-confirm.service
 units set-default graphical.target
 # Logins and shells, what would write to the disk, and what waits for something that a station hasn't.
 units mask getty.target getty@.service autovt@.service serial-getty@.service console-getty.service container-getty@.service debug-shell.service \

@@ -21,6 +21,7 @@ PROGRAMS = [
     ("prismesh-deviced", 8, "run the eye tracker and the prism mask of a Prismesh station"),
     ("prismesh-intake", 8, "take models from the network"),
     ("prismesh-import", 8, "read one deck in a sandbox"),
+    ("prismesh-setup", 8, "write what the kiosk sets a station up with"),
 ]
 
 

@@ -12,7 +12,8 @@ from pathlib import Path
 
 sys.dont_write_bytecode = True
 ROOT = Path(__file__).resolve().parents[2]
-PROGRAMS = {"prismesh": 1, "prismesh-kiosk": 1, "prismesh-modeld": 8, "prismesh-deviced": 8, "prismesh-import": 8, "prismesh-intake": 8}
+PROGRAMS = {"prismesh": 1, "prismesh-kiosk": 1, "prismesh-modeld": 8, "prismesh-deviced": 8, "prismesh-import": 8, "prismesh-intake": 8,
+            "prismesh-setup": 8}
 
 
 def output(*command, **options):

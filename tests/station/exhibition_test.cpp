@@ -15,9 +15,6 @@
 namespace prismesh::test {
 namespace {
 
-/// `openssl passwd -6 -salt saltsalt 4711`
-constexpr const char* kHashOf4711 = "$6$saltsalt$FMJn4/2F8fwlOAepBqo55eJQliVblvlAkyYrm7ZgY2hOG.THZlaAgT9HsBp.0WJ9xljSPF4I6D1oS.F1QFWKI.";
-
 class ExhibitionTest : public ::testing::Test {
  protected:
   void SetUp() override {

@@ -76,6 +76,7 @@ Station::~Station() {
   if (::testing::Test::HasFailure() && device_daemon_)
     std::fprintf(stderr, "--- what the device daemon said ---\n%s", device_daemon_->standard_error().c_str());
   kiosk_.reset();
+  setup_service_.reset();
   device_daemon_.reset();
   model_server_.reset();
   display_.reset();
@@ -169,6 +170,23 @@ void Station::start_calibration(const std::vector<std::string>& more_arguments) 
   arguments.insert(arguments.end(), more_arguments.begin(), more_arguments.end());
   run_kiosk(arguments);
   ASSERT_FALSE(kiosk_->wait_for("calibration 1 ").empty()) << "the calibration didn't begin\n" << kiosk_->all_output();
+  find_window();
+}
+
+void Station::start_setup_service(const std::filesystem::path& root) {
+  const std::filesystem::path socket = folder_ / "run" / "setup.sock";
+  setup_service_ =
+      std::make_unique<Process>(std::vector<std::string>{"systemd-socket-activate", "--listen=" + socket.string(), "--accept", "--inetd",
+                                                         (kPrograms / "prismesh-setup").string(), "--root", root.string()},
+                                std::map<std::string, std::string>{});
+  for (int tries = 0; tries < 1000 && !std::filesystem::exists(socket); ++tries) ::usleep(10'000);
+  ASSERT_TRUE(std::filesystem::exists(socket)) << setup_service_->standard_error();
+}
+
+void Station::start_setup(const std::vector<std::string>& more_arguments) {
+  kiosk_.reset();
+  run_kiosk(more_arguments);
+  ASSERT_FALSE(kiosk_->wait_for("setup ").empty()) << "the set-up didn't begin\n" << kiosk_->all_output();
   find_window();
 }
 

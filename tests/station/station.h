@@ -16,6 +16,10 @@ namespace prismesh::test {
 /// Programs that a station needs and that are missing on this machine; empty: none.
 std::string missing_programs();
 
+/// A PIN's hash: `openssl passwd -6 -salt saltsalt 4711`
+inline constexpr const char* kHashOf4711 =
+    "$6$saltsalt$FMJn4/2F8fwlOAepBqo55eJQliVblvlAkyYrm7ZgY2hOG.THZlaAgT9HsBp.0WJ9xljSPF4I6D1oS.F1QFWKI.";
+
 /// An X server without a screen, with a window manager that gives windows the keyboard.
 class VirtualDisplay {
  public:
@@ -58,6 +62,10 @@ class Station {
   void start_calibration(const std::vector<std::string>& more_arguments = {});
   /// A kiosk with these settings, of an exhibition; waits until its deck is shown.
   void start_exhibition(const std::filesystem::path& settings);
+  /// Listens for the kiosk's set-up as systemd does on a station, and writes beneath `root`.
+  void start_setup_service(const std::filesystem::path& root);
+  /// A kiosk that leads through the set-up; waits for its first page.
+  void start_setup(const std::vector<std::string>& more_arguments = {});
   Process& kiosk() { return *kiosk_; }
   VirtualDisplay& display() { return *display_; }
 
@@ -132,6 +140,7 @@ class Station {
   std::unique_ptr<VirtualDisplay> display_;
   std::unique_ptr<Process> model_server_;
   std::unique_ptr<Process> device_daemon_;
+  std::unique_ptr<Process> setup_service_;
   std::unique_ptr<Process> kiosk_;
   int width_ = 1280, height_ = 800;
   bool rectangles_ = false;         ///< what the kiosk draws; a new one draws lassos

@@ -40,6 +40,7 @@ for service in $services prismesh-intake; do
   check "exposure of $service at most 1.${limit#1}" systemd-analyze security --offline=yes --threshold=$limit /usr/lib/systemd/system/$service.service
 done
 check "exposure of prismesh-import at most 1.5" systemd-analyze security --offline=yes --threshold=15 /usr/lib/systemd/system/prismesh-import@.service
+check "exposure of prismesh-setup at most 2.0" systemd-analyze security --offline=yes --threshold=20 /usr/lib/systemd/system/prismesh-setup@.service
 
 # --- starting ---
 systemd-tmpfiles --create /usr/lib/tmpfiles.d/prismesh.conf
@@ -133,6 +134,30 @@ check "prismesh-intake answers by TLS 1.3" bash -c "$(declare -f health); health
 check "its key is its own" [ "$(stat -c '%U %a' /var/lib/prismesh-intake/identity.pem)" = "prismesh-intake 600" ]
 check "the group reads its store" [ "$(stat -c '%G %a' /var/lib/prismesh-intake/store/models)" = "prismesh 750" ]
 check "prismesh-intake stops" systemctl stop prismesh-intake.service
+
+# --- the set-up: the kiosk's user asks, root writes ---
+cat >/tmp/ask.py <<'ASK'
+import socket, sys
+link = socket.socket(socket.AF_UNIX)
+link.connect("/run/prismesh/setup.sock")
+link.sendall(sys.argv[1].encode() + b"\n")
+print(link.makefile().readline(), end="")
+ASK
+chmod 644 /tmp/ask.py
+ask() { setpriv --reuid "$1" --regid prismesh --clear-groups timeout 30 python3 /tmp/ask.py "$2"; }
+export -f ask
+check "the set-up's socket isn't there by itself" [ ! -e /run/prismesh/setup.sock ]
+systemctl start prismesh-setup.socket
+check "the kiosk's user sets the zone" bash -c 'ask prismesh-kiosk "{\"request\":\"set_zone\",\"zone\":\"Europe/Berlin\"}" | grep done && [ "$(readlink /etc/localtime)" = ../usr/share/zoneinfo/Europe/Berlin ]'
+check "and the profile" bash -c 'ask prismesh-kiosk "{\"request\":\"set_profile\",\"profile\":\"lenticular\"}" | grep done && grep -q "profile = \"lenticular\"" /etc/prismesh/prismesh.toml'
+check "and the name" bash -c 'ask prismesh-kiosk "{\"request\":\"set_name\",\"name\":\"crash-lab\"}"; [ "$(cat /etc/hostname)" = crash-lab ] && grep -q "127.0.1.1 crash-lab" /etc/hosts'
+check "switches pairing on, which starts the service, now and with the machine" bash -c '
+  ask prismesh-kiosk "{\"request\":\"set_pairing\",\"on\":true}" | grep done &&
+  for i in {1..100}; do [ "$(systemctl is-active prismesh-intake.service)" = active ] && break; sleep 0.1; done &&
+  systemctl is-active prismesh-intake.service && systemctl is-enabled prismesh-intake.service prismesh-intake.socket'
+check "and off" bash -c 'ask prismesh-kiosk "{\"request\":\"set_pairing\",\"on\":false}" | grep done && ! systemctl is-active prismesh-intake.service && ! systemctl is-enabled prismesh-intake.service'
+check "a wrong request is refused with its field" bash -c 'ask prismesh-kiosk "{\"request\":\"set_zone\",\"zone\":\"../../etc/passwd\"}" | grep "\"file\":\"zone\""'
+check "no other user comes to the socket" bash -c '! ask prismesh-intake "{\"request\":\"get_setup\"}"'
 check "no unit has failed" bash -c '[ -z "$(systemctl list-units --failed --no-legend "prismesh*")" ]'
 
 # --- what can't start says so, and isn't started again and again ---

@@ -278,6 +278,7 @@ def main():
         bare_s = boots(proof, out, arguments.image, agent)
         disk = str(out / "disk.img")
         prepare(arguments.image, disk, {**agent, **patience, "/etc/prismesh/prismesh.toml": SETTINGS,
+                                        "/etc/systemd/system/prismesh-setup.socket": "-> /dev/null",  # it is set up by its files
                                         "/etc/systemd/system/prismesh-kiosk.service.d/eyes.conf": FIXED_EYES})
         serial = (ports["tracker"], ports["servo"])
         guest = machine(out, disk, "first", serial)

@@ -268,6 +268,8 @@ def first_start(proof, versions, out):
         def text(name):
             return run("debugfs", "-R", f"cat {name}", f"{disk}?offset={at}", capture_output=True, text=True).stdout.strip()
         made.append((text("etc/machine-id"), text("etc/hostname")))
+        said = run("debugfs", "-R", "stat etc/prismesh/set-up-due", f"{disk}?offset={at}", capture_output=True, text=True).stdout
+        proof.check("its set-up is due", "Type: regular" in said, said)
         proof.check("it has a number and a name of its own", len(made[-1][0]) == 32 and made[-1][1] == f"prismesh-{made[-1][0][:4]}", str(made))
         disk.unlink()
     proof.check("two stations of one image have different ones", made[0][0] != made[1][0], str(made))

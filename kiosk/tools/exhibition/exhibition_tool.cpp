@@ -159,6 +159,10 @@ bool ExhibitionTool::allow_command(const input::Command& command) {
       context_.notices.say(notices::Notice::Kind::information, "Files are closed in the exhibition: nothing is opened or saved.");
     return false;
   }
+  if (command == context_.options.exhibition->set_up) {
+    ask_pin();
+    return false;
+  }
   return command != context_.options.exhibition->fullscreen;
 }
 
