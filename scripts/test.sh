@@ -242,6 +242,12 @@ run_soak() {
     python3 -B tests/batch/batch_soak.py build/bin </dev/null || status=$?
     if [ "$status" -eq 77 ]; then skipped=$((skipped + 1)); else count_one "batch_soak.py" "$status"; fi
   fi
+  say "Models of a vault over a line that fails at random, by programs that are killed"
+  status=0
+  if step "build: release" configure_and_build release -DPRISMESH_TESTS=ON -- prismesh; then
+    python3 -B tests/vault/vault_soak.py build/bin --seed "$seed" </dev/null || status=$?
+    if [ "$status" -eq 77 ]; then skipped=$((skipped + 1)); else count_one "vault_soak.py --seed $seed" "$status"; fi
+  fi
   say "The demo on every real deck with shells"
   status=0
   tests/checker/demo_decks.py || status=$?

@@ -86,9 +86,25 @@ class VaultFetch {
   double fraction_ = 0;
 };
 
+/// With what people call it, if that can be listed.
+Result<store::ModelRecord> named_model(Vault& vault, const store::ContentHash& model) {
+  store::ModelRecord named;
+  named.model = model;
+  const Result<std::vector<ListedObject>> names = vault.list(std::string(kNames) + model.hex() + "/");
+  if (!names && is_cancelled(names.error())) return fail(names.error());
+  for (const ListedObject& object : names ? *names : std::vector<ListedObject>())
+    if (auto record = record_of_object(object.key); record && record->when_s >= named.when_s) named = std::move(*record);
+  return named;
+}
+
 }  // namespace
 
 Result<store::ModelRecord> find_model(Vault& vault, const std::string& wanted) {
+  if (const auto model = store::parse_content_hash(wanted)) {
+    const Result<std::optional<std::uint64_t>> size = vault.size_of(model_object(*model));
+    if (!size) return fail(size.error());
+    if (*size) return named_model(vault, *model);
+  }
   const Result<std::vector<store::ModelRecord>> all = models(vault);
   if (!all) return fail(all.error());
   const Result<std::size_t> chosen = store::choose_model(*all, wanted, vault.name(), "prismesh vault list");

@@ -16,7 +16,8 @@
 
 namespace prismesh::ipc::vault {
 
-/// The model that is meant, by store::choose_model. Errors: there is none, or several.
+/// The model that is meant, by store::choose_model; one by its whole hash also where a list doesn't have it (yet). Errors: there is none,
+/// or several.
 Result<store::ModelRecord> find_model(Vault& vault, const std::string& wanted);
 
 /// Errors: it isn't there; it has another hash; it isn't taken (store::decode_manifest).

@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::size_t kMaxRefusal = std::size_t{64} << 10;
 constexpr std::size_t kMaxHeaders = 200;
+constexpr long kSilentBytes = 100;  // a second
 
 struct FreeHeaders {
   void operator()(curl_slist* list) const { curl_slist_free_all(list); }
@@ -171,7 +172,7 @@ struct S3Line::Impl {
     if (!keys.authorities.empty()) set(curl, CURLOPT_CAINFO, keys.authorities.c_str());
     set(curl, CURLOPT_HTTPHEADER, headers.get());
     set(curl, CURLOPT_CONNECTTIMEOUT, static_cast<long>(patience.connect.count()));
-    set(curl, CURLOPT_LOW_SPEED_LIMIT, 1L);
+    set(curl, CURLOPT_LOW_SPEED_LIMIT, kSilentBytes);
     set(curl, CURLOPT_LOW_SPEED_TIME, static_cast<long>(patience.silence.count()));
     set(curl, CURLOPT_NOPROGRESS, 0L);
     set(curl, CURLOPT_XFERINFOFUNCTION, ask_stop);

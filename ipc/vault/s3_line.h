@@ -19,7 +19,7 @@ namespace prismesh::ipc::vault {
 
 struct S3Patience {
   std::chrono::seconds connect{10};
-  std::chrono::seconds silence{60};  ///< with less than a byte a second
+  std::chrono::seconds silence{60};  ///< with less than 100 bytes a second
 };
 
 struct S3Request {

@@ -17,6 +17,7 @@ using Method = S3Request::Method;
 constexpr int kWrongBytesMax = 3;  // in a row: then it isn't chance
 constexpr std::size_t kMaxListing = std::size_t{16} << 20;
 constexpr std::string_view kObjectsAtOnce = "1000";
+constexpr int kListsMax = 500;
 
 /// RFC 3986, as signatures have it.
 std::string percent_encoded(std::string_view text) {
@@ -123,7 +124,9 @@ Result<std::vector<ListedObject>> Vault::list(std::string_view beginning) {
   const std::string& folder = line_.address().folder;
   std::vector<ListedObject> all;
   std::string next;
+  int lists = 0;
   do {
+    if (++lists > kListsMax) return fail(name(), "lists more than " + std::to_string(kListsMax) + " times a thousand objects");
     // The keys ascend, for the signature.
     std::string query = next.empty() ? "" : "continuation-token=" + percent_encoded(next) + "&";
     query += "list-type=2&max-keys=" + std::string(kObjectsAtOnce) + "&prefix=" + percent_encoded(folder + std::string(beginning));

@@ -60,7 +60,9 @@ pipeline = cache s3api tempauth proxy-server
 use = egg:swift#proxy
 allow_account_management = true
 account_autocreate = true
-node_timeout = 20
+conn_timeout = 30
+node_timeout = 60
+recoverable_node_timeout = 60
 [filter:cache]
 paste.filter_factory = memory_cache:factory
 [filter:s3api]
@@ -94,6 +96,7 @@ def factory(conf, **_):
         return call
     return wrap
 """
+# What is late for a list is put into it by a daemon that doesn't run here: so nothing may be late.
 STORAGE = """[DEFAULT]
 bind_ip = 127.0.0.1
 bind_port = {port}
@@ -104,6 +107,9 @@ devices = {folder}/devices
 mount_check = false
 disable_fallocate = true
 log_address = {folder}/no-log
+conn_timeout = 30
+node_timeout = 60
+container_update_timeout = 60
 [pipeline:main]
 pipeline = {server}-server
 [app:{server}-server]

@@ -106,6 +106,12 @@ TEST_F(VaultTransfer, lists_go_on_where_they_are_cut) {
         "200 OK", "<ListBucketResult><IsTruncated>true</IsTruncated><NextContinuationToken>a</NextContinuationToken></ListBucketResult>");
   });
   EXPECT_THAT(models(vault).error().text(), HasSubstr("lists the same objects again and again"));
+  store_.answer_instead([pages = 0](const SeenRequest& request) mutable -> std::optional<std::string> {
+    if (request.target.find("list-type") == std::string::npos) return std::nullopt;
+    return MemoryStore::answer("200 OK", "<ListBucketResult><IsTruncated>true</IsTruncated><NextContinuationToken>" +
+                                             std::to_string(++pages) + "</NextContinuationToken></ListBucketResult>");
+  });
+  EXPECT_THAT(models(vault).error().text(), HasSubstr("lists more than 500 times"));
 }
 
 TEST_F(VaultTransfer, a_file_that_changes_is_not_sent) {
