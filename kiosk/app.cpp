@@ -154,6 +154,7 @@ Result<SetupScreen::End> run_setup(const AppOptions& options, display::Window& w
   what.reads_space_mice = false;
   Result<std::unique_ptr<Station>> station = Station::create(what);
   if (!station) return fail(station.error());
+  supervisor::tell_alive();  // before the shaders of another renderer
   (*station)->place(window.monitor(), window.position());
   SetupOptions setup;
   setup.socket = ipc::setup_socket_path(options.runtime_dir);
@@ -185,6 +186,7 @@ Result<void> run_in_window(const AppOptions& options, Settled settled) {
       if (!changed) return fail(changed.error());
       settled = std::move(*changed);
       setup.reset();
+      supervisor::tell_alive();
     }
     Result<std::unique_ptr<Station>> station = Station::create(settled.what);
     if (!station) return fail(station.error());

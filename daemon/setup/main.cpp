@@ -8,11 +8,10 @@
 namespace {
 
 constexpr const char* kUsage =
-    "usage: prismesh-setup [--root DIR] [--kiosk USER]\n"
-    "  Carries out one request of the kiosk's set-up. Its standard input is a connected socket, on which the request comes and the answer\n"
-    "  goes (docs/appliance.md).\n"
-    "  --root DIR     write beneath this folder, and leave the running machine alone; default /\n"
-    "  --kiosk USER   the user who may ask, beside root and the program's own\n";
+    "usage: prismesh-setup [--root FOLDER] [--kiosk USER]\n"
+    "  Carries out one request of the kiosk: its standard input is a connected socket, on which the answer goes (docs/appliance.md).\n"
+    "  --root   write beneath this folder, and leave the running machine alone; default /\n"
+    "  --kiosk  the user who may ask, beside root and the program's own\n";
 
 bool is_socket(int descriptor) {
   int type = 0;

@@ -63,7 +63,9 @@ void setup_title(const View& view) {
   ImGui::TextWrapped("%s", view.task.c_str());
 }
 
-void line_with_signal(unsigned colour, Signal signal, const std::string& text) {
+void line_with_signal(unsigned colour, Signal signal, std::string text) {
+  // Errors are worded to stand behind a field's name.
+  if (!text.empty() && text.front() >= 'a' && text.front() <= 'z') text.front() = static_cast<char>(text.front() - 'a' + 'A');
   draw_signal(signal, 0.7F * ImGui::GetFontSize());
   ImGui::SameLine(0, 0.5F * ImGui::GetFontSize());
   ImGui::PushStyleColor(ImGuiCol_Text, colour);
@@ -223,9 +225,7 @@ SetupActions setup_panel(const View& view, bool works, PanelLayout& layout) {
   ImGui::EndDisabled();
   ImGui::PopStyleVar();
   ImGui::PushFont(small_font());
-  ImGui::TextDisabled(
-      "%s",
-      works ? "Writing .." : "Enter goes on, Page Up back, Page Down skips; arrow keys choose, Tab goes to the next field; Esc leaves");
+  ImGui::TextDisabled("%s", works ? "Writing .." : "Enter next, Page Up back, Page Down skip, arrows choose, Tab field, Esc leave");
   ImGui::PopFont();
   ImGui::EndChild();
   ImGui::End();

@@ -197,6 +197,7 @@ TEST(KeysTest, rows_keep_the_order_of_help_and_menu) {
                                              "Ctrl+PgUp",
                                              "Ctrl+PgDn",
                                              "Ctrl+Shift+P",
+                                             "F12",
                                              "Ctrl+R",
                                              "F11",
                                              "F10",
