@@ -12,6 +12,8 @@ TYPES = {"string": str, "boolean": bool, "object": dict, "array": list, "integer
 def _is_a(value: Any, kind: str) -> bool:
     if isinstance(value, bool):
         return kind == "boolean"
+    if kind == "integer" and isinstance(value, float):
+        return value.is_integer()  # 5.0 is a whole number in JSON Schema
     return isinstance(value, TYPES[kind])
 
 
@@ -42,6 +44,12 @@ def problem_with(value: Any, schema: dict[str, Any], name: str = "arguments") ->
             elif schema.get("additionalProperties") is False:
                 return f"{name} has no field \"{field[:80]}\"; the fields are {', '.join(properties) or 'none'}"
     return None
+
+
+def with_whole_numbers(arguments: dict[str, Any], schema: dict[str, Any]) -> dict[str, Any]:
+    """Arguments that fit the schema, with whole numbers in place of those like 5.0 where it asks for them."""
+    whole = {name for name, each in schema["properties"].items() if each["type"] == "integer"}
+    return {name: int(value) if name in whole else value for name, value in arguments.items()}
 
 
 def _shorter(value: Any, entries: int) -> Any:

@@ -12,16 +12,27 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import prismesh
-from prismesh._mcp_edit_list import EditList, content_of, left_of
+from prismesh._mcp_edit_list import EditList, content_of, content_or_none_of, left_of
 
 Progress = Callable[[float, str], bool]
 Answer = dict[str, Any]
 MAX_OPEN = 8
 MAX_EDIT_SHOWN = 2_000  # characters
+BUILT_IN_CRITERIA = ("default", "strict", "skew_and_thickness")
+SETTINGS = ".prismesh.toml"  # stands behind a deck's name in that of its settings
 
 
 class Refused(Exception):
     """A tool can't do it; the sentence says why."""
+
+
+def part_of(progress: Progress, begin: float, end: float) -> Progress:
+    """The progress of the part of the work from `begin` to `end`."""
+    return lambda fraction, words: progress(begin + fraction * (end - begin), words)
+
+
+def leads_up(name: str) -> bool:
+    return name == os.pardir or name.startswith(os.pardir + os.sep)
 
 
 @dataclass
@@ -32,6 +43,7 @@ class Opened:
     path: str
     options: dict[str, Any]
     files: list[str]
+    names: list[str]  # of its files and of those that a save copies along, relative to its folder, the main one first
     edits: EditList
     done: list[Answer] = field(default_factory=list)  # the edits with what came of them
     saved_at: int = 0  # how many edits there were at the last save
@@ -49,10 +61,11 @@ class Tools:
     def shut_down(self) -> None:
         """Edits that weren't saved stay on disk, where the next opening finds them."""
         for each in self.opened.values():
-            if each.edits.is_empty():
-                each.edits.retire()
-            else:
-                each.edits.release()
+            with contextlib.suppress(OSError):
+                if each.edits.is_empty() or each.saved_at == len(each.done):
+                    each.edits.retire()
+                else:
+                    each.edits.release()
         self.opened.clear()
 
     # --- where files may lie ---
@@ -79,21 +92,33 @@ class Tools:
 
     def _check_settings(self, deck: str) -> None:
         """The settings beside a deck, and the criteria files that they name, lie below the root too."""
-        file = deck + ".prismesh.toml"
+        for name in self._criteria_of_settings(deck):
+            self._inside(name, os.path.dirname(deck))
+
+    def _criteria_of_settings(self, deck: str) -> list[str]:
+        file = deck + SETTINGS
         if not os.path.lexists(file):
-            return
+            return []
         self._inside(file)
         try:
             with open(file, "rb") as opened:
                 settings = tomllib.load(opened)
-        except (OSError, ValueError):
-            return  # the opening says what is wrong
+        except OSError:
+            return []  # the opening says what is wrong
+        except (ValueError, RecursionError) as error:
+            raise Refused(f"{file}: not TOML: {error}") from None  # what isn't understood here can't be checked
         parts = settings.get("parts")
-        for table in [settings, *(parts if isinstance(parts, list) else [])]:
-            if isinstance(table, dict) and isinstance(table.get("criteria"), str):
-                self._inside(table["criteria"], os.path.dirname(deck))
+        tables = [settings, *(parts if isinstance(parts, list) else [])]
+        return [table["criteria"] for table in tables if isinstance(table, dict) and isinstance(table.get("criteria"), str)]
 
-    def _open(self, path: str, progress: Progress, **options: Any) -> tuple[prismesh.Document, list[str]]:
+    def _inputs(self, deck: str, options: Answer) -> dict[str, str | None]:
+        """The hashes of what a deck is opened with beside its own files: the settings beside it, also that there are none, and criteria files."""
+        named = [os.path.join(os.path.dirname(deck), each) for each in self._criteria_of_settings(deck) if each not in BUILT_IN_CRITERIA]
+        if options.get("criteria", BUILT_IN_CRITERIA[0]) not in BUILT_IN_CRITERIA:
+            named.append(options["criteria"])
+        return content_or_none_of([deck + SETTINGS, *named])
+
+    def _open(self, path: str, progress: Progress, **options: Any) -> tuple[prismesh.Document, list[str], list[str]]:
         """Opens a deck all of whose files lie below the root. Of a file outside nothing is told but that."""
         self._check_settings(path)
         try:
@@ -102,36 +127,43 @@ class Tools:
             if error.file and error.file != "expression" and not self._is_inside(os.path.join(os.path.dirname(path), error.file)):
                 raise Refused(f"{path}: names a file outside the folder that this server may use, {self.root}") from None
             raise
-        files = [os.path.join(os.path.dirname(path), each) for each in document.info()["files"]]
+        folder = os.path.dirname(path)
+        info = document.info()
+        files = [os.path.join(folder, each) for each in info["files"]]
         for each in files:
             if not self._is_inside(each):
                 document.close()
                 raise Refused(f"{path}: includes a file outside the folder that this server may use, {self.root}")
-        return document, files
+        return document, files, [os.path.relpath(os.path.join(folder, each), folder) for each in [*files, *info["companions"]]]
 
-    def _with_safe_paths(self, opened: Opened, edit: Answer, progress: Progress) -> Answer:
-        """The edit with the files that it names as whole paths, so that a replay from anywhere finds them."""
+    def _with_safe_paths(self, opened: Opened, edit: Answer, progress: Progress) -> tuple[Answer, dict[str, str | None]]:
+        """The edit with the files that it names as whole paths, so that a replay from anywhere finds them; and the hashes of what it reads."""
         folder = os.path.dirname(opened.path)
         edit = dict(edit)
         kind = edit.get("edit")
+        reads: list[str] = []
         if kind == "repair" and edit.get("on_cancel") == "keep":
             raise Refused('repair: "on_cancel": "keep" isn\'t possible here, since the list of edits couldn\'t say how far it came')
         if kind == "replace_part" and isinstance(edit.get("deck"), str):
             edit["deck"] = self._existing_file(edit["deck"], folder)
             if "mesh" not in edit:
-                self._open(edit["deck"], progress)[0].close()
+                variant, reads, _ = self._open(edit["deck"], progress)
+                variant.close()
         if kind == "weld" and isinstance(edit.get("points_file"), str):
             edit["points_file"] = self._existing_file(edit["points_file"], folder)
-        if kind == "set_criteria" and isinstance(edit.get("criteria"), str) and "text" not in edit:
+            reads = [edit["points_file"]]
+        if kind == "set_criteria" and isinstance(edit.get("criteria"), str) and "text" not in edit and edit["criteria"] != "deck":
             edit["criteria"] = self._criteria(edit["criteria"], folder)
-        return edit
+            if edit["criteria"] not in BUILT_IN_CRITERIA and os.path.isabs(edit["criteria"]):
+                reads = [edit["criteria"]]
+        return edit, content_or_none_of(reads)
 
     def _criteria(self, name: str, folder: str) -> str:
         """The name of a built-in set as it is; of a file its whole path."""
         if "/" in name or name.endswith(".toml"):
             return self._existing_file(name, folder)
-        self._inside(name, folder)
-        return name
+        whole = self._inside(name, folder)
+        return whole if name not in BUILT_IN_CRITERIA and os.path.isfile(whole) else name
 
     # --- the tools ---
 
@@ -163,19 +195,13 @@ class Tools:
         try:
             if wanted and not left:
                 raise Refused(f"{path}: no edits of this deck are left by a server that ended")
-            document, files = self._open(path, progress, **(left[0].about["options"] if wanted else options))
-            try:
-                content = content_of(files)
-                if not wanted:
-                    opened = Opened(document, path, options, files, EditList.begin(self.edits_folder, path, options, content))
-                else:
-                    opened = self._recovered(document, path, files, content, left[0], progress)
-                    left.pop(0)
-            except BaseException:
-                document.close()
-                raise
+            if wanted:
+                opened = self._recovered(path, left[0], progress)
+                left.pop(0)
+            else:
+                opened = self._begun(path, options, progress)
         finally:
-            others = [{"edit_list": each.path, "edits": each.count()} for each in left]
+            others = [{"edit_list": each.path, "edits": each.count(), **{key: each.about[key] for key in ("saved_edits", "saved_as") if key in each.about}} for each in left]
             for each in left:
                 each.release()
         self._numbers += 1
@@ -184,24 +210,55 @@ class Tools:
         answer = self._summary(name)
         answer["recovered_edits"] = len(opened.done)
         answer["left_by_servers_that_ended"] = others
+        if above := [each for each in opened.names if leads_up(each)]:
+            answer["notes"] = [f"the deck names {above[0]}, which lies outside the main file's folder, so it can't be saved to a new file, only over the source"]
         return answer
 
-    def _recovered(self, document: prismesh.Document, path: str, files: list[str], content: dict[str, str], edits: EditList, progress: Progress) -> Opened:
-        if edits.about["files"] != content:
-            raise Refused(f"{path}: the deck has changed since the edits in {edits.path} were made; \"prismesh replay\" applies what still fits")
-        opened = Opened(document, path, edits.about["options"], files, edits)
+    def _begun(self, path: str, options: Answer, progress: Progress) -> Opened:
+        inputs = self._inputs(path, options)
+        document, files, names = self._open(path, progress, **options)
         try:
-            wanted = edits.edits()
-        except ValueError:
-            raise Refused(f"{edits.path}: isn't a list of edits any more") from None
-        for number, edit in enumerate(wanted, 1):
+            return Opened(document, path, options, files, names, EditList.begin(self.edits_folder, path, options, content_of(files), inputs))
+        except BaseException:
+            document.close()
+            raise
+
+    def _recovered(self, path: str, edits: EditList, progress: Progress) -> Opened:
+        """Does the edits of a list again, if all files that they were made with are as they were."""
+        options = edits.about["options"]
+        known = edits.about["inputs"]
+        try:
+            for each in known:
+                self._inside(each)
+            now = {**content_or_none_of(list(known)), **self._inputs(path, options)}
+        except OSError as error:
+            raise Refused(f"{error.filename}: {error.strerror}") from None
+        for each in {**known, **now}:
+            if known.get(each, "") != now[each]:
+                raise Refused(f"{each}: has changed since the edits in {edits.path} were made; \"prismesh replay\" applies what still fits")
+        document, files, names = self._open(path, part_of(progress, 0, 0.5), **options)
+        try:
+            if edits.about["files"] != content_of(files):
+                raise Refused(f"{path}: the deck has changed since the edits in {edits.path} were made; \"prismesh replay\" applies what still fits")
+            saved_at = edits.about.get("saved_edits", 0)
+            opened = Opened(document, path, options, files, names, edits, saved_at=saved_at if isinstance(saved_at, int) else 0)
             try:
-                self._note(opened, edit, document.edit(self._with_safe_paths(opened, edit, progress), progress=progress))
-            except prismesh.Cancelled:
-                raise
-            except (prismesh.Error, Refused) as error:
-                raise Refused(f"{edits.path}:{number}: this edit can't be done again: {error}") from None
-        return opened
+                wanted = edits.edits()
+            except ValueError:
+                raise Refused(f"{edits.path}: isn't a list of edits any more") from None
+            for number, edit in enumerate(wanted, 1):
+                told = part_of(progress, 0.5 + 0.5 * (number - 1) / len(wanted), 0.5 + 0.5 * number / len(wanted))
+                try:
+                    safe, _ = self._with_safe_paths(opened, edit, part_of(told, 0, 0.5))
+                    self._note(opened, edit, document.edit(safe, progress=part_of(told, 0.5, 1)))
+                except prismesh.Cancelled:
+                    raise
+                except (prismesh.Error, Refused) as error:
+                    raise Refused(f"{edits.path}:{number}: this edit can't be done again: {error}") from None
+            return opened
+        except BaseException:
+            document.close()
+            raise
 
     def describe(self, arguments: Answer, _progress: Progress) -> Answer:
         opened = self._of(arguments)
@@ -226,10 +283,12 @@ class Tools:
         """Does an edit and writes it to the list. What can't be written isn't kept."""
         if opened.takes_no_edits:
             raise Refused(opened.takes_no_edits)
-        edit = self._with_safe_paths(opened, edit, progress)
-        report = opened.document.edit(edit, progress=progress)
+        edit, inputs = self._with_safe_paths(opened, edit, part_of(progress, 0, 0.5))
+        line = EditList.line_of(edit)  # what can't be written isn't done
+        report = opened.document.edit(edit, progress=part_of(progress, 0.5, 1) if inputs else progress)
         try:
-            opened.edits.append(edit)
+            opened.edits.keep_inputs(inputs)
+            opened.edits.append(line)
         except OSError as error:
             back = {"undo": "redo", "redo": "undo"}.get(edit["edit"], "undo")
             with contextlib.suppress(prismesh.Error):
@@ -271,58 +330,100 @@ class Tools:
         opened = self._of(arguments)
         with tempfile.TemporaryDirectory(prefix="prismesh-mcp-") as folder:
             copy = os.path.join(folder, os.path.basename(opened.path))
-            opened.document.save(copy, progress=progress)
-            return {"compared_with": opened.path, **prismesh.diff(opened.path, copy, progress=progress)}
+            opened.document.save(copy, progress=part_of(progress, 0, 0.5))
+            return {"compared_with": opened.path, **prismesh.diff(opened.path, copy, progress=part_of(progress, 0.5, 1))}
 
     def save(self, arguments: Answer, progress: Progress) -> Answer:
         opened = self._of(arguments)
         target = self._inside(arguments["path"])
         if os.path.isdir(target):
             raise Refused(f"{target}: is a folder; name the deck's file")
-        if not os.path.lexists(target):
-            answer = self._save_new(opened, target, progress)
-        elif not arguments.get("overwrite", False):
+        exists = os.path.lexists(target)
+        if exists and not arguments.get("overwrite", False):
             raise Refused(f"{target}: exists already; give another name")
-        elif not self.allow_overwrite:
+        if exists and not self.allow_overwrite:
             raise Refused(f"{target}: exists already, and this server was started without --allow-overwrite; give another name")
-        else:
-            answer = opened.document.save(target, progress=progress)
+        self._check_written(opened, target)
+        answer = self._save_over(opened, target, progress) if exists else self._save_new(opened, target, progress)
         opened.saved_at = len(opened.done)
+        with contextlib.suppress(OSError):  # the list tells less then, but the deck is saved
+            opened.edits.keep(saved_edits=opened.saved_at, saved_as=target)
         if target in (os.path.realpath(each) for each in opened.files):
             answer["saved_over_the_source"] = True
-            self._begin_anew(opened, arguments["document"])
+            self._begin_anew(opened, arguments["document"], answer)
         return {"path": target, **answer}
+
+    def _check_written(self, opened: Opened, target: str) -> None:
+        """Of all that a save reads and writes, links followed: the deck's files, those that it copies along, and the settings."""
+        source_folder, parent = os.path.dirname(opened.path), os.path.dirname(target)
+        for number, name in enumerate(opened.names):
+            source = os.path.join(source_folder, name)
+            # a name that leads up isn't copied
+            final = target if number == 0 else source if leads_up(name) else os.path.join(parent, name)
+            if not os.path.lexists(source) and number > 0:
+                raise Refused(f"{source}: isn't there, or has a name that this server can't check")
+            if not self._is_inside(source) or not self._is_inside(final):
+                raise Refused(f"{target}: the deck has the file {name}, which leads outside the folder that this server may use, {self.root}")
+        for deck in (opened.path, target):
+            self._inside(deck + SETTINGS)
+
+    @staticmethod
+    def _save_over(opened: Opened, target: str, progress: Progress) -> Answer:
+        settings = target + SETTINGS
+        before = os.stat(settings) if os.path.exists(settings) else None
+        answer = opened.document.save(target, progress=progress)
+        after = os.stat(settings) if os.path.exists(settings) else None
+        if after and (before is None or (before.st_ino, before.st_mtime_ns) != (after.st_ino, after.st_mtime_ns)) and settings not in answer["files_written"]:
+            answer["files_written"].append(settings)
+        return answer
 
     def _save_new(self, opened: Opened, target: str, progress: Progress) -> Answer:
         """Saves beside the target, then gives each file its name where there is none: no file is ever replaced."""
         parent = os.path.dirname(target)
-        os.makedirs(parent, exist_ok=True)
-        source_folder = os.path.dirname(opened.path)
-        own = {os.path.relpath(each, source_folder) for each in opened.files}
-        with tempfile.TemporaryDirectory(prefix=".prismesh-save-", dir=parent) as folder:
-            main = os.path.join(folder, os.path.basename(target))
-            answer = opened.document.save(main, progress=progress)
-            names = [os.path.relpath(os.path.join(at, name), folder) for at, _, files in os.walk(folder) for name in files]
-            new = []
-            for name in sorted(names, key=lambda name: name == os.path.basename(target)):  # the main file last
-                final = os.path.join(parent, name)
-                if not self._is_inside(final) or (name not in own and not self._is_inside(os.path.join(source_folder, name))):
-                    raise Refused(f"{target}: the deck has the file {name}, which leads outside the folder that this server may use, {self.root}")
-                if not os.path.lexists(final):
-                    new.append(name)
-                elif not os.path.isfile(final) or not filecmp.cmp(final, os.path.join(folder, name), shallow=False):
-                    raise Refused(f"{final}: exists already with other content, and the deck has a file of this name; save into another folder")
-            self._name(new, folder, parent)
+        with contextlib.ExitStack() as undone:
+            made: list[str] = []  # folders, the outer ones first
+            undone.callback(self._remove_empty, made)
+            self._make_folder(parent, made)
+            with tempfile.TemporaryDirectory(prefix=".prismesh-save-", dir=parent) as folder:
+                main = os.path.join(folder, os.path.basename(target))
+                answer = opened.document.save(main, progress=progress)
+                names = [os.path.relpath(os.path.join(at, name), folder) for at, _, files in os.walk(folder) for name in files]
+                new = []
+                for name in sorted(names, key=lambda name: name == os.path.basename(target)):  # the main file last
+                    final = os.path.join(parent, name)
+                    if not os.path.lexists(final):
+                        new.append(name)
+                    elif not os.path.isfile(final) or not filecmp.cmp(final, os.path.join(folder, name), shallow=False):
+                        raise Refused(f"{final}: exists already with other content, and the deck has a file of this name; save into another folder")
+                self._name(new, folder, parent, made)
+            undone.pop_all()
         answer["files_written"] = [os.path.join(parent, name) for name in new]
         return answer
 
     @staticmethod
-    def _name(names: list[str], folder: str, parent: str) -> None:
+    def _make_folder(folder: str, made: list[str]) -> None:
+        """Makes it, and notes what had to be made."""
+        missing = []
+        while not os.path.lexists(folder):
+            missing.append(folder)
+            folder = os.path.dirname(folder)
+        for each in reversed(missing):
+            os.mkdir(each)
+            made.append(each)
+
+    @staticmethod
+    def _remove_empty(folders: list[str]) -> None:
+        for each in reversed(folders):
+            with contextlib.suppress(OSError):
+                os.rmdir(each)
+
+    @classmethod
+    def _name(cls, names: list[str], folder: str, parent: str, made: list[str]) -> None:
         named: list[str] = []
         try:
             for name in names:
                 final = os.path.join(parent, name)
-                os.makedirs(os.path.dirname(final), exist_ok=True)
+                cls._make_folder(os.path.dirname(final), made)
                 try:
                     os.link(os.path.join(folder, name), final)
                 except FileExistsError:
@@ -344,20 +445,28 @@ class Tools:
                     os.unlink(each)
             raise Refused(f"{error.filename or parent}: {error.strerror}; nothing is saved") from None
 
-    def _begin_anew(self, opened: Opened, name: str) -> None:
+    def _begin_anew(self, opened: Opened, name: str, answer: Answer) -> None:
         """The deck on disk is what is shown now, so the edits before it must not be done to it again."""
-        opened.edits.retire()
+        self._let_go(opened, name)
+        try:
+            self.opened[name] = self._begun(opened.path, opened.options, lambda _fraction, _words: True)
+        except (prismesh.Error, Refused, OSError) as error:
+            answer["closed"] = True
+            answer["notes"] = [*answer.get("notes", []), f"the deck is saved, but couldn't be opened again, so the document is closed: {error}"]
+
+    def _let_go(self, opened: Opened, name: str) -> str | None:
+        """Closes the document, whatever becomes of its list, whose path is returned."""
         opened.document.close()
         del self.opened[name]
-        document, files = self._open(opened.path, lambda _fraction, _words: True, **opened.options)
-        self.opened[name] = Opened(document, opened.path, opened.options, files, EditList.begin(self.edits_folder, opened.path, opened.options, content_of(files)))
+        try:
+            return opened.edits.retire()
+        except OSError:
+            return None
 
     def close(self, arguments: Answer, _progress: Progress) -> Answer:
         opened = self._of(arguments)
         unsaved = len(opened.done) - opened.saved_at
-        opened.document.close()
-        del self.opened[arguments["document"]]
-        return {"closed": arguments["document"], "unsaved_edits": unsaved, "edit_list": opened.edits.retire()}
+        return {"closed": arguments["document"], "unsaved_edits": unsaved, "edit_list": self._let_go(opened, arguments["document"])}
 
 
 def _tool(name: str, title: str, description: str, properties: Answer, required: list[str], reads: bool = False, destroys: bool = False) -> Answer:
@@ -402,7 +511,7 @@ TOOLS = [
           {**_DOCUMENT, "edit": {"type": "object", "required": ["edit"],
                                  "properties": {"edit": {"type": "string", "description": "which edit"},
                                                 "on": {"type": ["string", "object"], "description": "what to act on, an expression or a selecting edit; without it, the selection"},
-                                                "by": {"type": ["array", "string"], "description": "translate, slide, move: [x, y, z], in the deck's length unit; select_region: what bounds it"},
+                                                "by": {"type": ["array", "string"], "items": {"type": "number"}, "description": "translate, slide, move: [x, y, z], in the deck's length unit; select_region: what bounds it"},
                                                 "distance": {"type": "number", "description": "lift: along the surface's normal, in the deck's length unit"},
                                                 "degrees": {"type": "number", "description": "rotate, move: the angle in degrees"}},
                                  "description": "the edit with its fields"}},

@@ -8,6 +8,7 @@ import argparse
 import json
 import os
 import queue
+import signal
 import sys
 import threading
 import time
@@ -15,12 +16,14 @@ import traceback
 from typing import Any
 
 import prismesh
-from prismesh._mcp_answers import fitted, problem_with
+from prismesh._mcp_answers import fitted, problem_with, with_whole_numbers
 from prismesh._mcp_tools import TOOLS, Refused, Tools
 
 VERSIONS = ("2024-11-05", "2025-03-26", "2025-06-18")  # of the protocol, ascending
 MAX_LINE = 4 << 20  # bytes
 MAX_WAITING = 1000  # requests
+MAX_BATCH = 100  # messages
+MAX_ID = 1000  # characters
 MAX_SENTENCE = 4000  # characters
 BETWEEN_PROGRESS_S = 0.25
 PARSE_ERROR, INVALID_REQUEST, UNKNOWN_METHOD, INVALID_PARAMS, INTERNAL_ERROR = -32700, -32600, -32601, -32602, -32603
@@ -61,7 +64,12 @@ def parsed(line: bytes) -> Any:
 
 
 def is_id(value: Any) -> bool:
-    return isinstance(value, (str, int)) and not isinstance(value, bool)
+    return (isinstance(value, int) and not isinstance(value, bool)) or (isinstance(value, str) and len(value) <= MAX_ID)
+
+
+def is_ping(message: Any) -> bool:
+    return (isinstance(message, dict) and message.get("jsonrpc") == "2.0" and message.get("method") == "ping" and is_id(message.get("id"))
+            and isinstance(message.get("params", {}), dict))
 
 
 class Server:
@@ -70,6 +78,8 @@ class Server:
         self.out = out
         self.version: str | None = None
         self.waiting: queue.Queue[Any] = queue.Queue(MAX_WAITING)
+        self.ending = False
+        self._idle = False
         self._cancelled: set[Any] = set()
         self._pending: set[Any] = set()
         self._lock = threading.Lock()
@@ -85,7 +95,15 @@ class Server:
                 line = line[os.write(self.out, line):]
 
     def read(self, descriptor: int) -> None:
-        """Of a thread of its own, so that a request can be cancelled while another is worked."""
+        """Of a thread of its own, so that a request can be cancelled, and a ping answered, while another is worked."""
+        signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGINT, signal.SIGTERM))  # they are for the thread that works
+        try:
+            self._read(descriptor)
+        except OSError:
+            pass  # the client has gone
+        self.waiting.put(None)
+
+    def _read(self, descriptor: int) -> None:
         for line in lines_of(descriptor):
             if line is not None and not line.strip():
                 continue
@@ -96,10 +114,15 @@ class Server:
             except (ValueError, MemoryError) as error:
                 self.waiting.put(ProtocolError(PARSE_ERROR, f"not JSON: {str(error)[:200]}"))
                 continue
+            if is_ping(message):
+                self.send({"jsonrpc": "2.0", "id": message["id"], "result": {}})
+                continue
+            if isinstance(message, list) and len(message) > MAX_BATCH:
+                self.waiting.put(ProtocolError(INVALID_REQUEST, f"a batch has at most {MAX_BATCH} messages"))
+                continue
             for each in message if isinstance(message, list) else [message]:
                 self._look_for_cancel(each)
             self.waiting.put(message)
-        self.waiting.put(None)
 
     def _look_for_cancel(self, message: Any) -> None:
         if not isinstance(message, dict):
@@ -116,8 +139,21 @@ class Server:
         with self._lock:
             return number in self._cancelled
 
+    def end(self, _signal: int, _frame: Any) -> None:
+        """By a signal: at once when nothing is worked, or by a second one; else what is worked is stopped as by a cancel, so that its temporary files go."""
+        if self._idle or self.ending:
+            raise KeyboardInterrupt
+        self.ending = True
+
+    def _next(self) -> Any:
+        try:
+            self._idle = True
+            return None if self.ending else self.waiting.get()
+        finally:
+            self._idle = False
+
     def serve(self) -> None:
-        while (message := self.waiting.get()) is not None:
+        while (message := self._next()) is not None:
             if isinstance(message, ProtocolError):
                 self.send(self._error(None, message))
             elif isinstance(message, list) and message and self.version == "2025-03-26":  # the only version with batches
@@ -135,19 +171,22 @@ class Server:
 
     def answer(self, message: Any) -> dict[str, Any] | None:
         """The response to a message; None: there is none to be sent."""
+        if isinstance(message, list):  # one that isn't a batch
+            for each in message:
+                self._forget(each.get("id") if isinstance(each, dict) else None)
         if not isinstance(message, dict) or message.get("jsonrpc") != "2.0":
+            self._forget(message.get("id") if isinstance(message, dict) else None)
             return self._error(None, ProtocolError(INVALID_REQUEST, "a message is an object with \"jsonrpc\": \"2.0\""))
         if "method" not in message and ("result" in message or "error" in message):
             return None  # a response, though this server asks nothing
         number = message.get("id")
+        if "id" in message and not is_id(number):  # nothing of it is sent back
+            return self._error(None, ProtocolError(INVALID_REQUEST, f"the id of a request is a text of at most {MAX_ID} characters or a whole number"))
         try:
             if not isinstance(message.get("method"), str):
                 raise ProtocolError(INVALID_REQUEST, "a request names its method")
             if "id" not in message:
                 return None  # a notification
-            if not is_id(number):
-                number = None
-                raise ProtocolError(INVALID_REQUEST, "the id of a request is a text or a whole number")
             if self._is_cancelled(number):
                 return None
             params = message.get("params", {})
@@ -161,12 +200,15 @@ class Server:
             raise
         except Exception:  # a fault of the server's own: the next request is served
             traceback.print_exc(file=sys.stderr)
-            return self._error(number if is_id(number) else None, ProtocolError(INTERNAL_ERROR, "a fault of the server; its standard error has more"))
+            return self._error(number, ProtocolError(INTERNAL_ERROR, "a fault of the server; its standard error has more"))
         finally:
-            if is_id(number):
-                with self._lock:
-                    self._pending.discard(number)
-                    self._cancelled.discard(number)
+            self._forget(number)
+
+    def _forget(self, number: Any) -> None:
+        if is_id(number):
+            with self._lock:
+                self._pending.discard(number)
+                self._cancelled.discard(number)
 
     def _result(self, method: str, params: dict[str, Any], number: Any) -> dict[str, Any] | None:
         if method == "initialize":
@@ -200,13 +242,14 @@ class Server:
         name, arguments = params.get("name"), params.get("arguments", {})
         tool = self._by_name.get(name) if isinstance(name, str) else None
         if tool is None:
-            raise ProtocolError(INVALID_PARAMS, f"there is no tool {json.dumps(name)[:80]}; the tools are {', '.join(self._by_name)}")
+            named = json.dumps(name)[:80] if isinstance(name, str) else "without a name"
+            raise ProtocolError(INVALID_PARAMS, f"there is no tool {named}; the tools are {', '.join(self._by_name)}")
         if problem := problem_with(arguments, tool["inputSchema"]):
             raise ProtocolError(INVALID_PARAMS, f"{name}: {problem}")
         meta = params.get("_meta")
         token = meta.get("progressToken") if isinstance(meta, dict) else None
         try:
-            answer = getattr(self.tools, name)(arguments, self._progress(number, token))
+            answer = getattr(self.tools, name)(with_whole_numbers(arguments, tool["inputSchema"]), self._progress(number, token))
         except prismesh.Cancelled:
             return None  # a request that was cancelled gets no response
         except prismesh.Error as error:
@@ -220,6 +263,8 @@ class Server:
             return self._failure(sentence, {"file": error.filename, "line": None, "message": str(error.strerror)})
         except TypeError as error:
             return self._failure(str(error), {"file": None, "line": None, "message": str(error)})
+        except RecursionError:
+            raise ProtocolError(INVALID_PARAMS, f"{name}: nested too deeply") from None
         except MemoryError:
             return self._failure("there isn't enough memory", {"file": None, "line": None, "message": "there isn't enough memory"})
         text, shown = fitted(answer)
@@ -236,16 +281,16 @@ class Server:
         return result
 
     def _progress(self, number: Any, token: Any):
-        last = 0.0
+        last, highest = 0.0, 0.0
 
         def tell(fraction: float, words: str) -> bool:
-            nonlocal last
+            nonlocal last, highest
             now = time.monotonic()
-            if is_id(token) and now - last >= BETWEEN_PROGRESS_S and fraction > 0:
-                last = now
+            if is_id(token) and now - last >= BETWEEN_PROGRESS_S and fraction > highest:  # the protocol wants it to rise
+                last, highest = now, fraction
                 told = {"progressToken": token, "progress": fraction, "total": 1}
                 self.send({"jsonrpc": "2.0", "method": "notifications/progress", "params": told if self.version == VERSIONS[0] else {**told, "message": words[:200]}})
-            return not self._is_cancelled(number)
+            return not self.ending and not self._is_cancelled(number)
         return tell
 
 
@@ -268,12 +313,16 @@ def main() -> int:
     os.dup2(2, 1)
     server = Server(Tools(options.root, os.path.realpath(options.edits), options.allow_overwrite), out)
     os.chdir(server.tools.root)  # what is relative is below it
+    for each in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(each, server.end)
     threading.Thread(target=server.read, args=(0,), daemon=True).start()
     try:
         server.serve()
     except (BrokenPipeError, KeyboardInterrupt):
         pass  # the client has gone
     finally:
+        for each in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(each, signal.SIG_IGN)
         server.tools.shut_down()
     return 0
 

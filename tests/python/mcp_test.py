@@ -26,7 +26,7 @@ LIFT = {"edit": "translate", "by": [0.5, 0.25, 4.125], "falloff": {"profile": "s
 
 
 class Client:
-    def __init__(self, root, edits, *more, limit=None, package=PACKAGE):
+    def __init__(self, root, edits, *more, limit=None, package=PACKAGE, environment=None):
         def limited():
             if limit is not None:
                 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
@@ -34,7 +34,7 @@ class Client:
         self.errors = tempfile.TemporaryFile()
         self.process = subprocess.Popen(
             [sys.executable, "-B", "-m", "prismesh.mcp", "--root", str(root), "--edits", str(edits), *more], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self.errors,
-            env={**os.environ, "PYTHONPATH": package}, cwd="/", preexec_fn=limited)
+            env={**os.environ, "PYTHONPATH": package, **(environment or {})}, cwd="/", preexec_fn=limited)
         self.number = 0
         self.held = b""
 
@@ -102,6 +102,11 @@ class Client:
         self.process.stdin.close()
         self.process.stdout.close()
         self.errors.close()
+
+
+def fields_below(schema):
+    """All schemas within one, itself among them."""
+    return [schema] + [each for field in schema.get("properties", {}).values() for each in fields_below(field)]
 
 
 class InFolder(unittest.TestCase):
@@ -236,6 +241,116 @@ class Session(InFolder):
         self.assertRefused("isn't possible here", client.call("edit", document="d1", edit={"edit": "repair", "on_cancel": "keep"}))
         self.assertEqual(client.do("list_edits", document="d1")["edits"], 0)
 
+    def test_a_recovery_needs_what_the_edits_were_made_with(self):
+        criteria = 'name = "ours"\n[metrics.warpage]\nwarn_above = %d\nfail_above = 80\n'
+        settings = self.root / "sheet.k.prismesh.toml"
+        other, ours, points, named = (self.root / name for name in ("other.k", "ours.toml", "points.csv", "named.toml"))
+        other.write_text("*KEYWORD\n*INCLUDE\nother_part.k\n*END\n")
+        part = self.root / "other_part.k"
+        decks.write_sheet(part, 3, 3)
+        ours.write_text(criteria % 70)
+        named.write_text(criteria % 60)
+        points.write_text("1,2,3\n")
+        settings.write_text('criteria = "named.toml"\n')
+        client = self.client()
+        edit_list = client.do("open_deck", path="sheet.k", criteria="ours.toml")["edit_list"]
+        client.do("edit", document="d1", edit={"edit": "replace_part", "part": 1, "deck": "other.k", "with": 1})
+        client.do("undo", document="d1")
+        client.do("edit", document="d1", edit={"edit": "set_criteria", "criteria": "named.toml", "on": "1"})
+        self.assertRefused("no weld can be made", client.call("edit", document="d1", edit={"edit": "weld", "points_file": "points.csv"}))
+        client.end()
+        client = self.client()
+        for path in (ours, named, other, part, settings):
+            held = path.read_bytes()
+            for change in (lambda: path.write_bytes(held + b"\n"), path.unlink):
+                change()
+                self.assertRefused(f"{path}: has changed since the edits", client.call("open_deck", path="sheet.k", recover=True))
+            path.write_bytes(held)
+        points.unlink()  # what an edit named that wasn't done
+        client.do("open_deck", path="sheet.k", recover=True)
+        self.assertEqual(client.do("list_edits", document="d1")["edits"], 3)
+        # settings that weren't there; a file that changed between two edits
+        settings.unlink()
+        self.assertEqual(client.end(), 0)
+        pathlib.Path(edit_list).unlink()
+        client = self.client()
+        client.do("open_deck", path="sheet.k")
+        client.do("edit", document="d1", edit={"edit": "set_criteria", "criteria": "ours.toml"})
+        client.end()
+        settings.write_text('criteria = "strict"\n')
+        client = self.client()
+        self.assertRefused(f"{settings}: has changed since", client.call("open_deck", path="sheet.k", recover=True))
+        settings.unlink()
+        client.do("open_deck", path="sheet.k", recover=True)
+        ours.write_text(criteria % 50)
+        client.do("edit", document="d1", edit={"edit": "set_criteria", "criteria": "ours.toml", "on": "1"})
+        client.end()
+        self.assertRefused(f"{ours}: has changed since", self.client().call("open_deck", path="sheet.k", recover=True))
+
+    def test_a_client_that_ends_without_close(self):
+        client = self.client()
+        edit_list = pathlib.Path(client.do("open_deck", path="sheet.k")["edit_list"])
+        client.do("edit", document="d1", edit=LIFT | {"on": "45-60"})
+        client.do("save", document="d1", path="new.k")
+        client.kill()
+        client = self.client()
+        left = client.do("open_deck", path="sheet.k")["left_by_servers_that_ended"]
+        self.assertEqual(left, [{"edit_list": str(edit_list), "edits": 1, "saved_edits": 1, "saved_as": str(self.root / "new.k")}])
+        self.assertEqual(client.do("open_deck", path="sheet.k", recover=True)["recovered_edits"], 1)
+        client.do("edit", document="d2", edit={"edit": "lift", "on": "70", "distance": 1})
+        client.end()
+        self.assertTrue(edit_list.exists())
+        client = self.client()
+        client.do("open_deck", path="sheet.k", recover=True)
+        self.assertEqual(client.do("close", document="d1")["unsaved_edits"], 1)
+        client.do("open_deck", path="sheet.k")
+        client.do("select", document="d2", expr="1")
+        client.do("save", document="d2", path="saved.k")
+        client.end()  # nothing is unsaved
+        self.assertEqual([path.name for path in self.edits.iterdir() if not path.name.endswith(".closed.jsonl")], [])
+        self.assertEqual(len(list(self.edits.iterdir())), 2)
+
+    def test_a_list_that_is_removed(self):
+        client = self.client()
+        for path in (self.deck, self.root / "other.k"):
+            path.write_bytes(self.before)
+        edit_list = pathlib.Path(client.do("open_deck", path="sheet.k")["edit_list"])
+        client.do("select", document="d1", expr="45-60,70")
+        edit_list.unlink()
+        self.assertRefused("couldn't be written (the list was removed)", client.call("edit", document="d1", edit=LIFT))
+        self.assertEqual(client.do("describe", document="d1")["selected"]["nodes"], 17)
+        self.assertEqual(client.do("close", document="d1"), {"closed": "d1", "unsaved_edits": 1, "edit_list": None})
+        client.do("open_deck", path="other.k")
+        for path in self.edits.iterdir():
+            path.unlink()
+        self.edits.rmdir()
+        client.do("save", document="d2", path="kept.k")
+        client.do("close", document="d2")
+        client.do("open_deck", path="other.k")
+        self.assertEqual(client.end(), 0)
+
+    def test_terminated(self):
+        """Nothing temporary stays of a comparison and of a save that are ended by SIGTERM."""
+        decks.write_sheet(self.deck, 150, 150)
+        temporary = self.outside / "temporary"
+        temporary.mkdir()
+        for where, tool, arguments in ((temporary, "diff", {}), (self.root / "new", "save", {"path": "new/saved.k"})):
+            seen = False
+            for _ in range(20):
+                client = self.client(environment={"TMPDIR": str(temporary)})
+                client.do("open_deck", path="sheet.k")
+                client.do("select", document="d1", expr="1")
+                client.write(json.dumps({"jsonrpc": "2.0", "id": 99, "method": "tools/call", "params": {"name": tool, "arguments": {"document": "d1", **arguments}}}).encode())
+                while not (seen := any(name.startswith((".prismesh-save-", "prismesh-mcp-")) for name in (os.listdir(where) if where.exists() else []))):
+                    if select.select([client.process.stdout], [], [], 0)[0]:
+                        break
+                client.process.send_signal(signal.SIGTERM)
+                self.assertEqual(client.process.wait(PATIENCE_S), 0)
+                if seen:
+                    break
+            self.assertTrue(seen)
+            self.assertEqual([path for path in (*temporary.iterdir(), *self.root.rglob("*")) if "prismesh-" in path.name], [])
+
 
 class Files(InFolder):
     def test_only_below_the_root(self):
@@ -325,6 +440,70 @@ class Files(InFolder):
         self.assertEqual(status, 0, err)
         self.assertEqual(decks.files_of(self.root / "elsewhere"), decks.files_of(self.outside / "program"))
 
+    def test_no_save_leaves_the_root_through_a_link(self):
+        (self.outside / "folder").mkdir()
+        (self.outside / "settings.toml").write_text("outside\n")
+        (self.outside / "table.dat").write_text("SECRETWORD\n")
+        (self.root / "inc").mkdir()
+        (self.root / "inc" / "part.k").write_bytes(self.before)
+        (self.outside / "folder" / "part.k").write_text("outside\n")
+        main = "*KEYWORD\n*INCLUDE\ninc/part.k\n*END\n"
+        self.deck.write_text(main)
+        (self.root / "settled.k").write_bytes(self.before)
+        (self.root / "settled.k.prismesh.toml").write_text('criteria = "strict"\n')
+        (self.root / "tabled.k").write_text(self.before.decode().replace("*END", "*DEFINE_CURVE_FUNCTION\n         1\n*INCLUDE_UNITCELL\ntab.dat\n*END"))
+        (self.root / "tab.dat").symlink_to(self.outside / "table.dat")
+        for folder in ("v", "t", "c"):
+            (self.root / folder).mkdir()
+            (self.root / folder / "a.k").write_text(main)
+        (self.root / "v" / "inc").symlink_to(self.outside / "folder")
+        (self.root / "t" / "a.k.prismesh.toml").symlink_to(self.outside / "settings.toml")
+        held = {path: path.read_bytes() for path in (self.outside / "folder" / "part.k", self.outside / "settings.toml")}
+        client = self.client("--allow-overwrite")
+        for number, (deck, target) in enumerate((("sheet.k", "v/a.k"), ("settled.k", "t/a.k"), ("tabled.k", "c/a.k")), 1):
+            client.do("open_deck", path=deck)
+            client.do("edit", document=f"d{number}", edit=LIFT | {"on": "45-60"})
+            for path in (target, target.replace("a.k", "new.k") if number != 2 else target):
+                self.assertRefused("outside the folder", client.call("save", document=f"d{number}", path=path, overwrite=True))
+            self.assertEqual((self.root / target).read_text(), main)
+        self.assertEqual({path: path.read_bytes() for path in held}, held)
+        self.assertEqual(sorted(path.name for path in (self.root / "c").iterdir()), ["a.k"])
+        # where nothing leads outside, settings that are written are told
+        (self.root / "t" / "a.k.prismesh.toml").unlink()
+        saved = client.do("save", document="d2", path="t/a.k", overwrite=True)
+        self.assertEqual(sorted(saved["files_written"]), [str(self.root / "t" / "a.k"), str(self.root / "t" / "a.k.prismesh.toml")])
+
+    def test_a_save_over_the_source_that_cannot_be_opened_again(self):
+        criteria = self.root / "c.toml"
+        criteria.write_text('name = "ours"\n[metrics.warpage]\nwarn_above = 70\nfail_above = 80\n')
+        client = self.client("--allow-overwrite")
+        edit_list = pathlib.Path(client.do("open_deck", path="sheet.k", criteria="c.toml")["edit_list"])
+        client.do("edit", document="d1", edit=LIFT | {"on": "45-60"})
+        criteria.unlink()
+        saved = client.do("save", document="d1", path="sheet.k", overwrite=True)
+        self.assertTrue(saved["saved_over_the_source"] and saved["closed"])
+        self.assertIn("c.toml", saved["notes"][-1])
+        self.assertNotEqual(self.deck.read_bytes(), self.before)
+        self.assertRefused("no document", client.call("describe", document="d1"))
+        self.assertFalse(edit_list.exists())
+        client.do("open_deck", path="sheet.k")
+
+    def test_a_deck_that_cannot_be_saved_elsewhere(self):
+        for folder in ("lib", "v"):
+            (self.root / folder).mkdir()
+        (self.root / "lib" / "part.k").write_bytes(self.before)
+        (self.root / "v" / "main.k").write_text("*KEYWORD\n*INCLUDE\n../lib/part.k\n*END\n")
+        client = self.client()
+        self.assertIn("../lib/part.k", client.do("open_deck", path="v/main.k")["notes"][0])
+        self.assertRefused("outside the main file's folder", client.call("save", document="d1", path="some/new/main.k"))
+        self.assertFalse((self.root / "some").exists())
+        self.assertNotIn("notes", client.do("open_deck", path="sheet.k"))
+
+    def test_settings_that_cannot_be_checked(self):
+        (self.outside / "criteria.toml").write_text('name = "SECRETWORD"\n[metrics.warpage]\nwarn_above = 13\nfail_above = 15\n')
+        (self.root / "sheet.k.prismesh.toml").write_text('\ufeffcriteria = "../criteria.toml"\n')  # a mark that one reader of TOML takes
+        self.assertRefused("sheet.k.prismesh.toml: not TOML", self.client().call("open_deck", path="sheet.k"))
+
 
 class Protocol(InFolder):
     def test_versions(self):
@@ -342,6 +521,8 @@ class Protocol(InFolder):
                 self.assertEqual((schema["type"], schema["additionalProperties"], set(schema["required"]) <= set(schema["properties"])), ("object", False, True))
                 for name, field in schema["properties"].items():
                     self.assertTrue(field["description"], f"{tool['name']} {name}")
+                for field in fields_below(schema):
+                    self.assertEqual("array" in field["type"], "items" in field, f"{tool['name']} {field}")
             self.assertEqual("structuredContent" in client.call("open_deck", path="sheet.k"), given >= "2025-06-18")
             batch = [{"jsonrpc": "2.0", "id": 70, "method": "ping"}, {"jsonrpc": "2.0", "method": "notifications/x"}, {"jsonrpc": "2.0", "id": 71, "method": "nothing"}]
             client.write(json.dumps(batch).encode())
@@ -414,7 +595,7 @@ class Protocol(InFolder):
                 if "id" in (message := json.loads(client.read())):
                     done.append(message["id"])
                 client.write(b"".join(cancels)[:-1])
-            client.write(line(first + 2, "ping", {})[:-1])
+            client.write(line(first + 2, "tools/list", {})[:-1])
             done += answered_until(first + 2)[0]
             # one that was done before its cancel came is answered and kept, the others are neither
             self.assertEqual(client.do("list_edits", document="d1")["edits"] - edits, len(done))
@@ -422,6 +603,60 @@ class Protocol(InFolder):
 
         self.assertIn(0, (tried(1000 + 10 * turn, True) for turn in range(20)))
         self.assertIn(0, (tried(2000 + 10 * turn, False) for turn in range(20)))
+
+    def test_ids(self):
+        client = self.client()
+        for number in ("1e999", "-1e999", "1.5", "[1]", "{}", "true", "[" * 985 + "]" * 985, '{"a":' * 300 + "1" + "}" * 300, '"' + "x" * 100_000 + '"'):
+            for rest in ('"method": 5', '"method": "ping"', '"method": "tools/call", "params": 7', '"a": 1'):
+                client.write(b'{"jsonrpc": "2.0", "id": %b, %b}' % (number.encode(), rest.encode()))
+                answer = json.loads(client.read())
+                self.assertEqual((answer["id"], answer["error"]["code"]), (None, -32600), number[:20])
+        client.write(b'{"jsonrpc": "2.0", "id": 1, "method": "tools/call", "params": {"name": %b}}' % (b"[" * 985 + b"]" * 985))
+        self.assertEqual(json.loads(client.read())["error"]["code"], -32602)
+        client.do("open_deck", path="sheet.k")
+        for depth in range(900, 1000, 3):
+            client.write(b'{"jsonrpc": "2.0", "id": 1, "method": "tools/call", "params": {"name": "edit", "arguments": {"document": "d1", "edit": {"edit": "select", "expr": %b}}}}'
+                         % (b"[" * depth + b"]" * depth))
+            answer = json.loads(client.read())
+            self.assertTrue(answer["result"]["isError"] if "result" in answer else answer["error"]["code"] in (-32602, -32700), answer)
+        self.assertEqual(client.do("list_edits", document="d1", first=1.0, count=5.0)["edits"], 0)
+        self.assertEqual(client.ask("tools/call", {"name": "list_edits", "arguments": {"document": "d1", "first": 1.5}})["error"]["code"], -32602)
+
+    def test_a_batch_is_bounded(self):
+        client = self.client(version="2025-03-26")
+        for count in (100, 101):
+            client.write(json.dumps([{"jsonrpc": "2.0", "id": number, "method": "ping"} for number in range(count)]).encode())
+            answer = json.loads(client.read())
+            self.assertEqual(len(answer) if count == 100 else answer["error"]["code"], count if count == 100 else -32600)
+
+    def test_a_ping_does_not_wait(self):
+        client = self.client()
+        client.do("open_deck", path="sheet.k")
+        lines = [{"jsonrpc": "2.0", "id": number, "method": "tools/call", "params": {"name": "check_quality", "arguments": {"document": "d1"}}} for number in range(100, 140)]
+        client.write(b"\n".join(json.dumps(line).encode() for line in [*lines, {"jsonrpc": "2.0", "id": "ping", "method": "ping"}]))
+        order = [json.loads(client.read())["id"] for _ in range(41)]
+        self.assertEqual([number for number in order if number != "ping"], list(range(100, 140)))
+        self.assertLess(order.index("ping"), 40)
+
+    def test_progress_rises(self):
+        from prismesh import mcp
+        tools = mcp.Tools(str(self.root), str(self.edits), False)
+        tools.open_deck({"path": "sheet.k"}, lambda _fraction, _words: True)
+        tools.select({"document": "d1", "expr": "1"}, lambda _fraction, _words: True)
+        told = []
+        tools.diff({"document": "d1"}, lambda fraction, _words: told.append(fraction) or True)
+        self.assertTrue(0.5 < told[-1] <= 1 and len([each for each in told if each <= 0.5]) > 1, told)
+        tools.shut_down()
+        there, here = os.pipe()
+        server = mcp.Server(tools, here)
+        held, mcp.BETWEEN_PROGRESS_S = mcp.BETWEEN_PROGRESS_S, 0
+        self.addCleanup(setattr, mcp, "BETWEEN_PROGRESS_S", held)
+        tell = server._progress(1, "token")
+        for fraction in (0.2, 0.1, 0.2, 0.7, 0.3, 1.0, 1.0):
+            tell(fraction, "words")
+        os.close(here)
+        with open(there, "rb") as sent:
+            self.assertEqual([json.loads(line)["params"]["progress"] for line in sent], [0.2, 0.7, 1.0])
 
     def test_malformed_lines(self):
         seed = random.randrange(1 << 32)
@@ -451,7 +686,7 @@ class Protocol(InFolder):
         for turn in range(20):
             lines = [mangled() for _ in range(50)]
             mark = f"turn {turn}"
-            client.process.stdin.write(b"\n".join(lines) + b"\n" + json.dumps({"jsonrpc": "2.0", "id": mark, "method": "ping"}).encode() + b"\n")
+            client.process.stdin.write(b"\n".join(lines) + b"\n" + json.dumps({"jsonrpc": "2.0", "id": mark, "method": "tools/list"}).encode() + b"\n")
             client.process.stdin.flush()
             while True:
                 line = client.read()
