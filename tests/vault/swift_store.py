@@ -22,7 +22,7 @@ SERVERS = ("account", "container", "object")
 # The programs swift-proxy-server and so on are a call of run_wsgi each; here they are forks of one process, which imports Swift once, and read
 # another swift.conf.
 START = """
-import os, signal, sys
+import ctypes, os, signal, sys
 from swift.common import utils
 utils.set_swift_dir(sys.argv[1])
 from swift.common.ring import RingBuilder
@@ -37,6 +37,7 @@ children = []
 for server in ("account", "container", "object", "proxy"):
     children.append(os.fork())
     if children[-1] == 0:
+        ctypes.CDLL(None).prctl(1, signal.SIGKILL)  # PR_SET_PDEATHSIG: each has a session of its own, which a kill of this one's doesn't reach
         sys.exit(run_wsgi(f"{sys.argv[1]}/{server}-server.conf", f"{server}-server"))
 signal.signal(signal.SIGCHLD, lambda *_: sys.exit("a server has ended"))
 try:
