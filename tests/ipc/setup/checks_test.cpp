@@ -123,8 +123,8 @@ TEST(SetupCalibration, is_a_whole_profile_with_a_name_that_a_file_can_have) {
 TEST(SetupZone, is_written_as_one_and_leads_nowhere_else) {
   for (const char* good : {"UTC", "Europe/Berlin", "America/Argentina/Buenos_Aires", "America/Port-au-Prince", "Etc/GMT+5"})
     EXPECT_TRUE(check_zone(good)) << good;
-  for (const char* bad :
-       {"", "/etc/passwd", "../UTC", "Europe/../UTC", "Europe//Berlin", "Europe/", "Europe/Berlin\n", "Europe Berlin", ".", "-a", "Europe/1"})
+  for (const char* bad : {"", "/etc/passwd", "../UTC", "Europe/../UTC", "Europe//Berlin", "Europe/", "Europe/Berlin\n", "Europe Berlin",
+                          ".", "-a", "Europe/1"})
     EXPECT_EQ(fault(check_zone(bad)).substr(0, 5), "zone:") << bad;
   EXPECT_FALSE(check_zone(std::string(61, 'a')));
 }
