@@ -7,6 +7,7 @@ import json
 import os
 import pathlib
 import random
+import re
 import resource
 import select
 import signal
@@ -351,6 +352,72 @@ class Session(InFolder):
             self.assertTrue(seen)
             self.assertEqual([path for path in (*temporary.iterdir(), *self.root.rglob("*")) if "prismesh-" in path.name], [])
 
+    def test_described_edits_are_those_of_the_core(self):
+        import prismesh
+        decks.write_sheet(self.root / "tiny.k", 2, 2)
+        sheet, tiny = prismesh.open(str(self.deck)), prismesh.open(str(self.root / "tiny.k"))
+        document = sheet
+
+        def refused(edit):
+            """Why the core refuses it; empty: it doesn't."""
+            try:
+                document.edit(edit)
+                return ""
+            except prismesh.Error as error:
+                return str(error)
+
+        def known(sentence):
+            found = re.search(r"\(known: (.*)\)$", sentence)
+            return set(found[1].split(", ")) if found else set()
+
+        rows = {}  # of the pages' tables, by the fields in their first cell
+        pages = "".join((pathlib.Path(__file__).parents[2] / "docs" / page).read_text() for page in ("edits.md", "welds.md", "bonds.md", "replacing.md"))
+        for line in pages.splitlines():
+            if line.startswith("| "):
+                for name in re.findall(r"`(\w+)`", line.split("|")[1]):
+                    rows.setdefault(name, []).append(line)
+        client = self.client()
+        edits = client.do("describe_edit")["edits"]
+        self.assertEqual(set(edits), known(refused({"edit": "zz"})))
+        misread = re.compile(r"must be |has no field|needs the field|there is no edit|known:")
+        compared = 0
+        for name in edits:
+            told = client.do("describe_edit", name=name)
+            document = tiny if name == "repair" else sheet  # the waves of the sheet keep a repair busy for long
+            example, fields = told["example"], {field["name"]: field for field in told["fields"]}
+            self.assertEqual(set(fields), known(refused({"edit": name, "zz": 1})) - {"edit"}, name)
+            self.assertLessEqual(set(example), {"edit", *fields})
+            if name not in ("branch", "undo", "redo"):
+                why = refused({key: value for key, value in example.items()})
+                self.assertNotRegex(why, misread, name)
+            if why == "" and name not in ("undo", "redo"):
+                document.edit("undo")
+            for field, about in fields.items():
+                where = f"{name} {field}"
+                self.assertEqual(sum(key in about for key in ("required", "default", "without")), 1, where)
+                if "required" in about:
+                    self.assertIn(f'needs the field "{field}"', refused({key: value for key, value in example.items() if key != field}), where)
+                self.assertRegex(pages, f'`{field}`|"{field}":', where)
+                if "default" in about:
+                    text = about["default"] if isinstance(about["default"], str) else json.dumps(about["default"])
+                    self.assertTrue(any(re.search(r"(?<!\w)%s(?!\w)" % re.escape(text), row) for row in rows.get(field, [])), f"{where}: {text}")
+                    if field in example:
+                        continue
+                    # the default says nothing new to the core
+                    reports = []
+                    for edit in (example, {**example, field: about["default"]}):
+                        document.edit({"edit": "select", "expr": "1-4" if document is tiny else "45-60,70"})
+                        try:
+                            reports.append({key: value for key, value in document.edit(edit).items() if key != "ms"})
+                            document.edit("undo")
+                        except prismesh.Error as error:
+                            reports.append(str(error))
+                        document.edit("undo")
+                    self.assertEqual(reports[0], reports[1], where)
+                    compared += isinstance(reports[0], dict)
+        self.assertGreater(compared, 30)
+        self.assertRefused("there is no edit", client.call("describe_edit", name="lyft"))
+
 
 class Files(InFolder):
     def test_only_below_the_root(self):
@@ -514,7 +581,7 @@ class Protocol(InFolder):
             self.assertEqual((result["serverInfo"]["name"], "tools" in result["capabilities"]), ("prismesh", True))
             self.assertEqual(client.ask("ping")["result"], {})
             tools = client.ask("tools/list")["result"]["tools"]
-            self.assertEqual([tool["name"] for tool in tools], ["open_deck", "describe", "select", "edit", "undo", "redo", "list_edits", "check_quality", "diff", "save", "close"])
+            self.assertEqual([tool["name"] for tool in tools], ["open_deck", "describe", "select", "edit", "describe_edit", "undo", "redo", "list_edits", "check_quality", "diff", "save", "close"])
             self.assertEqual(("annotations" in tools[0], "title" in tools[0]), (given >= "2025-03-26", given >= "2025-06-18"))
             for tool in tools:
                 schema = tool["inputSchema"]
