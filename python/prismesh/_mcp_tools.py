@@ -7,12 +7,13 @@ import json
 import os
 import tempfile
 import tomllib
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
 import prismesh
 from prismesh._mcp_edit_list import EditList, content_of, content_or_none_of, left_of
+from prismesh._mcp_edits import EDITS
 
 Progress = Callable[[float, str], bool]
 Answer = dict[str, Any]
@@ -118,15 +119,20 @@ class Tools:
             named.append(options["criteria"])
         return content_or_none_of([deck + SETTINGS, *named])
 
+    @contextlib.contextmanager
+    def _nothing_told_of_outside(self, deck: str) -> Iterator[None]:
+        try:
+            yield
+        except prismesh.Error as error:
+            if error.file and error.file != "expression" and not self._is_inside(os.path.join(os.path.dirname(deck), error.file)):
+                raise Refused(f"{deck}: names a file outside the folder that this server may use, {self.root}") from None
+            raise
+
     def _open(self, path: str, progress: Progress, **options: Any) -> tuple[prismesh.Document, list[str], list[str]]:
         """Opens a deck all of whose files lie below the root. Of a file outside nothing is told but that."""
         self._check_settings(path)
-        try:
+        with self._nothing_told_of_outside(path):
             document = prismesh.open(path, progress=progress, **options)
-        except prismesh.Error as error:
-            if error.file and error.file != "expression" and not self._is_inside(os.path.join(os.path.dirname(path), error.file)):
-                raise Refused(f"{path}: names a file outside the folder that this server may use, {self.root}") from None
-            raise
         folder = os.path.dirname(path)
         info = document.info()
         files = [os.path.join(folder, each) for each in info["files"]]
@@ -311,6 +317,15 @@ class Tools:
     def edit(self, arguments: Answer, progress: Progress) -> Answer:
         return self._apply(self._of(arguments), arguments["edit"], progress)
 
+    def describe_edit(self, arguments: Answer, _progress: Progress) -> Answer:
+        name = arguments.get("name")
+        if name is None:
+            return {"edits": {each: does for each, (does, _, _) in EDITS.items()}}
+        if name not in EDITS:
+            raise Refused(f"there is no edit \"{name[:80]}\"; the edits are {', '.join(EDITS)}")
+        does, fields, example = EDITS[name]
+        return {"edit": name, "does": does, "fields": fields, "example": example}
+
     def undo(self, arguments: Answer, progress: Progress) -> Answer:
         return self._apply(self._of(arguments), {"edit": "undo"}, progress)
 
@@ -331,7 +346,8 @@ class Tools:
         with tempfile.TemporaryDirectory(prefix="prismesh-mcp-") as folder:
             copy = os.path.join(folder, os.path.basename(opened.path))
             opened.document.save(copy, progress=part_of(progress, 0, 0.5))
-            return {"compared_with": opened.path, **prismesh.diff(opened.path, copy, progress=part_of(progress, 0.5, 1))}
+            with self._nothing_told_of_outside(opened.path):  # the deck on disk may have changed
+                return {"compared_with": opened.path, **prismesh.diff(opened.path, copy, progress=part_of(progress, 0.5, 1))}
 
     def save(self, arguments: Answer, progress: Progress) -> Answer:
         opened = self._of(arguments)
@@ -488,7 +504,7 @@ TOOLS = [
            "length_unit": {"type": "string", "enum": ["mm", "m", "in"], "description": "the deck's length unit; without it, it is guessed"},
            "target_size": {"type": ["number", "string"], "exclusiveMinimum": 0,
                            "description": "element edge that quality is judged by: a length in the deck's length unit, \"part\" (each part's median edge) or \"deck\" (the deck's)"},
-           "criteria": {"type": "string", "description": "a built-in set of quality criteria, like \"strict\", or a criteria file (.toml): " + _PATH},
+           "criteria": {"type": "string", "description": f"a built-in set of quality criteria ({', '.join(BUILT_IN_CRITERIA)}), or a criteria file (.toml): {_PATH}"},
            "recover": {"type": "boolean", "description": "do again what a server that ended had done to this deck, newest first; the options are those of then"}},
           ["path"]),
     _tool("describe", "Describe the document",
@@ -504,10 +520,9 @@ TOOLS = [
            "ids": {"type": "integer", "minimum": 0, "maximum": 1000, "description": "how many ids to list; default 100"}},
           ["document", "expr"]),
     _tool("edit", "Apply an edit",
-          "Applies one edit, completely or not at all, in the JSON of docs/edits.md: {\"edit\": \"translate\", \"by\": [0, 0, 2.5]}. Edits: select, select_region, select_lasso, "
-          "select_flange, grow, shrink, invert, hide, show, only, lock, unlock, translate, lift, slide, rotate, move, relax, repair, separate, split, collapse, merge, swap, weld, "
-          "bond, repair_welds, replace_part, set_target_size, set_criteria. Lengths and positions are in the deck's length unit, angles in degrees, ids the deck's own. "
-          "A wrong name or field is told with the nearest known one.",
+          f"Applies one edit, completely or not at all: {{\"edit\": \"translate\", \"by\": [0, 0, 2.5]}}. Edits: {', '.join(EDITS)}; describe_edit tells their fields. "
+          "Lengths and positions are in the deck's length unit, angles in degrees, ids the deck's own. Paths in edits are relative to the deck's folder. "
+          f"Built-in criteria: {', '.join(BUILT_IN_CRITERIA)}. A wrong name or field is told with the nearest known one.",
           {**_DOCUMENT, "edit": {"type": "object", "required": ["edit"],
                                  "properties": {"edit": {"type": "string", "description": "which edit"},
                                                 "on": {"type": ["string", "object"], "description": "what to act on, an expression or a selecting edit; without it, the selection"},
@@ -516,6 +531,8 @@ TOOLS = [
                                                 "degrees": {"type": "number", "description": "rotate, move: the angle in degrees"}},
                                  "description": "the edit with its fields"}},
           ["document", "edit"]),
+    _tool("describe_edit", "Describe an edit", "The fields of an edit with their defaults, units and an example; without a name, all edits with what they do.",
+          {"name": {"type": "string", "description": "the edit, like \"translate\""}}, [], reads=True),
     _tool("undo", "Undo", "Takes the last edit back, also one that selects.", _DOCUMENT, ["document"]),
     _tool("redo", "Redo", "Does again what undo took back.", _DOCUMENT, ["document"]),
     _tool("list_edits", "List the edits", "The edits since the deck was opened, undo and redo among them, and the file on disk that keeps them.",
