@@ -19,7 +19,7 @@ std::vector<PartFigures> part_figures(const Model& model) {
   for (const Part& part : *model.parts) figures.push_back({part.id, part.name, 0, 0, part.thickness, std::nullopt});
   for (std::size_t shell = 0; shell < model.shell_count(); ++shell) {
     const PartIndex part = model.shell_parts[shell];
-    if (!part.valid()) continue;
+    if (!part.valid() || model.is_removed(ShellIndex(shell))) continue;  // a removed one has no corners
     PartFigures& of_part = figures[part.value];
     const ShellNodes& nodes = model.shell_nodes[shell];
     ++(nodes.is_triangle() ? of_part.tris : of_part.quads);

@@ -62,6 +62,21 @@ class SameAsTheCommandLine(InFolder):
             self.assertEqual(document.check("1-200", chordal=True), some)
             self.assertEqual(some["elements"], 200)
 
+    def test_info_counts_no_shell_that_an_edit_removed(self):
+        with prismesh.open(self.deck) as document:
+            before = document.info()
+            shell = self.id_of_first_shell()
+            document.edit({"edit": "collapse", "at": [f"shell:{shell}"]})
+            document.save(self.path("less.k"))
+            counted = document.info()
+        of_file = decks.program_json("info", self.path("less.k"))[0]
+        self.assertEqual(counted["parts"], of_file["parts"])
+        self.assertNotEqual(counted["parts"], before["parts"])
+
+    def id_of_first_shell(self):
+        cards = pathlib.Path(self.deck).read_text().split("*ELEMENT_SHELL\n")[1]
+        return int(next(line for line in cards.splitlines() if not line.startswith("$"))[:8])
+
     def test_options_of_open(self):
         with prismesh.open(self.deck, length_unit="m", target_size={None: 4, "1": 2.5}, criteria="strict") as document:
             by_program = decks.program_json("check", self.deck, "--length-unit", "m", "--target-size", "4", "--target-size", "2.5@1",
