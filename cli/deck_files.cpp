@@ -13,6 +13,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Whether a file lies beneath a folder without its links. What can't be asked for counts as outside.
+bool lies_beneath(const fs::path& path, const fs::path& folder) {
+  std::error_code error;
+  const fs::path real = fs::canonical(path, error);
+  if (error) return false;
+  return std::mismatch(folder.begin(), folder.end(), real.begin(), real.end()).first == folder.end();
+}
+
 std::ptrdiff_t folders_up(const fs::path& relative) { return std::count(relative.begin(), relative.end(), fs::path("..")); }
 
 }  // namespace
@@ -36,6 +44,9 @@ Result<DeckFiles> files_of(const mesh::deck::Deck& deck) {
   }
   DeckFiles found;
   found.leaves_folder = up > 0;
+  const fs::path main = deck.files.front().path, folder = fs::canonical(fs::absolute(main).parent_path(), error);
+  for (const auto& [relative, path] : on_disk)
+    if (path != main && (folders_up(relative) > 0 || !lies_beneath(path, folder))) found.outside.push_back(path);
   for (const auto& [relative, path] : on_disk) found.files.push_back({path, (prefix / relative).lexically_normal().generic_string()});
   found.main = (prefix / deck.files.front().relative).lexically_normal().generic_string();
   return found;

@@ -21,7 +21,7 @@ struct ObjectList {
   std::string next;  ///< asks for what follows; empty: nothing does
 };
 
-/// Errors: another form; more follows, but not where.
+/// Errors: another form; more follows, but not where, or in more than 4 KiB.
 Result<ObjectList> parse_object_list(std::string_view body);
 
 struct S3Refusal {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
-#include <stdexcept>
+#include <new>
 #include <utility>
 
 #include <curl/curl.h>
@@ -123,12 +123,6 @@ bool passes(CURLcode code) {
   }
 }
 
-/// A setting that this libcurl must know.
-template <class Value>
-void set(CURL* handle, CURLoption option, Value value) {
-  if (curl_easy_setopt(handle, option, value) != CURLE_OK) throw std::runtime_error("libcurl refuses a setting");
-}
-
 void add_header(HeaderList& list, const std::string& header) {
   curl_slist* longer = curl_slist_append(list.get(), header.c_str());
   if (longer == nullptr) throw std::bad_alloc();
@@ -154,8 +148,13 @@ struct S3Line::Impl {
   Stop stop;
   std::unique_ptr<CURL, FreeHandle> handle;  ///< keeps the connection
 
-  void prepare(const S3Request& request, Exchange& exchange, const HeaderList& headers) const {
+  /// Errors: why libcurl refuses a setting; then nothing may be sent.
+  CURLcode prepare(const S3Request& request, Exchange& exchange, const HeaderList& headers) const {
     CURL* const curl = handle.get();
+    CURLcode refused = CURLE_OK;
+    const auto set = [&refused](CURL* on, CURLoption option, auto value) {
+      if (refused == CURLE_OK) refused = curl_easy_setopt(on, option, value);
+    };
     curl_easy_reset(curl);  // keeps the connection
     const std::string place =
         address.origin() + "/" + address.bucket + (request.object.empty() ? "" : "/" + address.folder + request.object);
@@ -191,6 +190,7 @@ struct S3Line::Impl {
       set(curl, CURLOPT_SEEKFUNCTION, seek_body);
       set(curl, CURLOPT_SEEKDATA, &exchange);
     }
+    return refused;
   }
 
   LineFault fault(CURLcode code, const Exchange& exchange) const {
@@ -230,8 +230,8 @@ LineResult<S3Answer> S3Line::ask(const S3Request& request, std::string& content,
   HeaderList headers;
   // libcurl 7.88 takes the payload's hash for the signature from here, so that the store compares the body with it.
   add_header(headers, "x-amz-content-sha256: " + request.body_hash.hex());
-  impl_->prepare(request, exchange, headers);
-  const CURLcode code = curl_easy_perform(impl_->handle.get());
+  CURLcode code = impl_->prepare(request, exchange, headers);
+  if (code == CURLE_OK) code = curl_easy_perform(impl_->handle.get());
   if (code != CURLE_OK) return tl::unexpected(impl_->fault(code, exchange));
   long status = 0;
   curl_easy_getinfo(impl_->handle.get(), CURLINFO_RESPONSE_CODE, &status);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <ctime>
 #include <map>
 #include <utility>
 
@@ -14,9 +15,13 @@ namespace {
 
 using Method = S3Request::Method;
 
+constexpr std::size_t kMaxListed = 200'000;
+constexpr std::size_t kMaxKey = 1024;  // S3 has no longer ones
+
 constexpr int kWrongBytesMax = 3;  // in a row: then it isn't chance
 constexpr std::size_t kMaxListing = std::size_t{16} << 20;
 constexpr std::string_view kObjectsAtOnce = "1000";
+constexpr int kListsMax = 2000;
 
 /// RFC 3986, as signatures have it.
 std::string percent_encoded(std::string_view text) {
@@ -123,7 +128,9 @@ Result<std::vector<ListedObject>> Vault::list(std::string_view beginning) {
   const std::string& folder = line_.address().folder;
   std::vector<ListedObject> all;
   std::string next;
+  int lists = 0;
   do {
+    if (++lists > kListsMax) return fail(name(), "lists more than " + std::to_string(kListsMax) + " times a thousand objects");
     // The keys ascend, for the signature.
     std::string query = next.empty() ? "" : "continuation-token=" + percent_encoded(next) + "&";
     query += "list-type=2&max-keys=" + std::string(kObjectsAtOnce) + "&prefix=" + percent_encoded(folder + std::string(beginning));
@@ -136,7 +143,12 @@ Result<std::vector<ListedObject>> Vault::list(std::string_view beginning) {
     if (some->next == next && !next.empty()) return fail(name(), "lists the same objects again and again");
     next = std::move(some->next);
     for (ListedObject& object : some->objects) {
-      if (!object.key.starts_with(folder)) continue;
+      if (!object.key.starts_with(folder) || object.key.size() > kMaxKey) continue;
+      if (all.size() == kMaxListed)
+        return fail(Error{
+            name(), 0,
+            "has more than " + std::to_string(kMaxListed) + " objects named " + std::string(beginning) + "..; " + "no vault is so large",
+            ErrorKind::over_limit});
       object.key.erase(0, folder.size());
       all.push_back(std::move(object));
     }
@@ -144,7 +156,8 @@ Result<std::vector<ListedObject>> Vault::list(std::string_view beginning) {
   return all;
 }
 
-Result<std::vector<store::ModelRecord>> models(Vault& vault) {
+Result<std::vector<store::ModelRecord>> models(Vault& vault, std::string_view preferred) {
+  const std::int64_t now_s = std::time(nullptr);
   const Result<std::vector<ListedObject>> there = vault.list(kModels);
   if (!there) return fail(there.error());
   const Result<std::vector<ListedObject>> names = vault.list(kNames);
@@ -153,7 +166,9 @@ Result<std::vector<store::ModelRecord>> models(Vault& vault) {
   for (const ListedObject& object : *names)
     if (auto record = record_of_object(object.key)) {
       store::ModelRecord& known = newest[record->model];
-      if (known.name.empty() || known.when_s < record->when_s) known = std::move(*record);
+      const bool is_preferred = record->name == preferred, has_preferred = known.name == preferred;
+      if (known.name.empty() || (is_preferred != has_preferred ? is_preferred : is_newer_name(*record, known, now_s)))
+        known = std::move(*record);
     }
   std::vector<store::ModelRecord> all;
   for (const ListedObject& object : *there)

@@ -108,6 +108,90 @@ TEST_F(VaultTransfer, lists_go_on_where_they_are_cut) {
   EXPECT_THAT(models(vault).error().text(), HasSubstr("lists the same objects again and again"));
 }
 
+TEST_F(VaultTransfer, lists_have_an_end) {
+  store_.answer_instead([pages = 0](const SeenRequest&) mutable -> std::optional<std::string> {
+    std::string body = "<ListBucketResult><IsTruncated>true</IsTruncated><NextContinuationToken>" + std::to_string(++pages % 2) +
+                       "</NextContinuationToken>";
+    for (int i = 0; i < 30'000; ++i) body += "<Contents><Key>f/names/a</Key><Size>1</Size></Contents>";
+    return MemoryStore::answer("200 OK", body + "</ListBucketResult>");
+  });
+  Vault vault = store_.vault();
+  const Result<std::vector<ListedObject>> listed = vault.list(kNames);
+  ASSERT_FALSE(listed);
+  EXPECT_THAT(listed.error().text(), HasSubstr("has more than 200000 objects named names/"));
+  EXPECT_EQ(listed.error().kind, ErrorKind::over_limit);
+  EXPECT_EQ(store_.requests().size(), 7u);
+}
+
+TEST_F(VaultTransfer, a_model_keeps_its_names) {
+  const auto named_by = [this](const std::string& name, std::int64_t now_s) {
+    Vault vault = store_.vault();
+    VaultPushOptions options;
+    options.name = name;
+    options.now_s = now_s;
+    const Result<VaultPushed> pushed = vault::push(vault, files_, "main.k", options);
+    EXPECT_TRUE(pushed);
+    return pushed ? pushed->model : store::ModelRecord();
+  };
+  const auto listed = [this] {
+    Vault vault = store_.vault();
+    const Result<std::vector<store::ModelRecord>> all = models(vault);
+    return all && all->size() == 1 ? all->front().name : "not one model";
+  };
+  EXPECT_EQ(named_by("first", 1000).name, "first");
+  EXPECT_EQ(named_by("", 2000).name, "first") << "a push without a name doesn't rename";
+  EXPECT_EQ(listed(), "first");
+  EXPECT_EQ(named_by("second", 2000).when_s, 2000);
+  EXPECT_EQ(named_by("third", 2000).when_s, 2001) << "in the same second";
+  EXPECT_EQ(listed(), "third");
+  const store::ModelRecord again = named_by("first", 3000);
+  EXPECT_EQ(again.when_s, 3000) << "an old name is taken again";
+  EXPECT_EQ(listed(), "first");
+  const std::size_t before = store_.count("PUT");
+  EXPECT_EQ(named_by("first", 4000), again);
+  EXPECT_EQ(store_.count("PUT"), before);
+  store::ModelRecord future = again;
+  future.name = "future";
+  future.when_s = 99'000'000'000;
+  store_.put("f/" + name_object(future), "future");
+  EXPECT_EQ(listed(), "first") << "a time in the future counts for nothing";
+  for (const char* name : {"first", "second", "third", "future"}) {
+    Vault vault = store_.vault();
+    const Result<store::ModelRecord> found = find_model(vault, name);
+    ASSERT_TRUE(found) << name;
+    EXPECT_EQ(found->model, again.model);
+  }
+  // A name that another model has now is that one's.
+  write("main.k", "other");
+  const store::ModelRecord other = named_by("second", 5000);
+  Vault vault = store_.vault();
+  EXPECT_EQ(find_model(vault, "second")->model, other.model);
+}
+
+TEST_F(VaultTransfer, a_push_mends_a_list_and_a_manifest_of_the_same_size) {
+  const Result<VaultPushed> pushed = push(store_.vault());
+  ASSERT_TRUE(pushed);
+  for (const std::string& object : {list_object(store::sha256(large_)), model_object(pushed->model.model)}) {
+    const std::string sound = store_.objects().at("f/" + object);
+    for (const std::string& damaged : {std::string(sound.size(), 'x'), sound + "x"}) {
+      store_.put("f/" + object, damaged);
+      ASSERT_FALSE(fetch(store_.vault()));
+      const Result<VaultPushed> again = push(store_.vault());
+      ASSERT_TRUE(again) << again.error().text();
+      EXPECT_FALSE(again->was_there);
+      EXPECT_EQ(store_.objects().at("f/" + object), sound);
+    }
+  }
+  EXPECT_TRUE(push(store_.vault())->was_there);
+  int wrong = 2;
+  store_.answer_instead([&wrong](const SeenRequest& request) -> std::optional<std::string> {
+    if (request.target.find("/lists/") == std::string::npos || wrong-- <= 0) return std::nullopt;
+    return MemoryStore::answer("200 OK", "prismesh-pieces 2\n");
+  });
+  ASSERT_TRUE(fetch(store_.vault())) << "a line may change a list";
+  expect_back();
+}
+
 TEST_F(VaultTransfer, a_file_that_changes_is_not_sent) {
   store_.answer_instead([this](const SeenRequest& request) -> std::optional<std::string> {
     if (request.method == "HEAD") std::ofstream(folder_ / "source/main.k") << "other";
@@ -132,8 +216,9 @@ TEST_F(VaultTransfer, what_a_store_says_wrongly_is_refused) {
       {"/pieces/", MemoryStore::answer("200 OK", std::string(kPieceBytes + 1, 'x')), "an object is longer than it was"},
       {"/models/", MemoryStore::answer("200 OK", std::string(store::kMaxManifestBytes + 1, 'x')), "an object is longer than it was"},
       {"/models/", MemoryStore::answer("200 OK", "prismesh-set 1\n"), "gives other bytes for models/"},
-      {"/lists/", MemoryStore::answer("200 OK", "prismesh-pieces 1\n"), "parts/large.bin isn't taken"},
-      {"/lists/", MemoryStore::answer("200 OK", encode_pieces(std::vector{store::sha256("main"), store::sha256("main")})), "isn't right"},
+      {"/lists/", MemoryStore::answer("200 OK", "prismesh-pieces 1\n"), "--resend"},
+      {"/lists/", MemoryStore::answer("200 OK", encode_pieces(std::vector{store::sha256("main"), store::sha256("main")})),
+       "isn't right; push the model again with --resend"},
       {"/lists/", MemoryStore::refusal("404 No", "NoSuchKey"), "isn't there; push the model again"},
       {"/pieces/", MemoryStore::refusal("404 No", "NoSuchKey"), "isn't there; push the model again"},
       {"list-type", MemoryStore::answer("200 OK", "<html/>"), "is no list of objects"},
@@ -210,7 +295,7 @@ TEST_F(VaultTransfer, tries_again_for_as_long_as_it_was_told) {
   });
   EXPECT_TRUE(push(store_.vault()));
   store_.answer_instead([](const SeenRequest&) { return std::optional(MemoryStore::refusal("503 No", "SlowDown")); });
-  EXPECT_THAT(push(store_.vault(std::chrono::milliseconds(20))).error().text(), HasSubstr("can't answer now (status 503)"));
+  EXPECT_THAT(push(store_.vault(std::chrono::milliseconds(20))).error().text(), HasSubstr("can't answer now (SlowDown: words)"));
   store_.answer_instead([](const SeenRequest& request) -> std::optional<std::string> {
     if (request.method != "PUT") return std::nullopt;
     return MemoryStore::refusal("400 No", "XAmzContentSHA256Mismatch");
@@ -224,7 +309,7 @@ TEST_F(VaultTransfer, tries_again_for_as_long_as_it_was_told) {
 TEST_F(VaultTransfer, stops_when_it_is_told) {
   store_.answer_instead([](const SeenRequest&) { return std::optional(MemoryStore::refusal("503 No", "SlowDown")); });
   std::atomic<bool> stops{false};
-  Vault vault = store_.vault(std::chrono::hours(1), [this, &stops] { return stops || store_.count("HEAD") > 2; });
+  Vault vault = store_.vault(std::chrono::hours(1), [this, &stops] { return stops || store_.requests().size() > 2; });
   VaultPushOptions options;
   const Result<VaultPushed> pushed = vault::push(vault, files_, "main.k", options);
   ASSERT_FALSE(pushed);
@@ -234,6 +319,7 @@ TEST_F(VaultTransfer, stops_when_it_is_told) {
 TEST_F(VaultTransfer, refuses_names_that_cannot_be_shown) {
   EXPECT_THAT(push(store_.vault(), "a\x1b[2J").error().text(), HasSubstr("a model's name is text"));
   EXPECT_THAT(push(store_.vault(), std::string(201, 'a')).error().text(), HasSubstr("at most 200 bytes"));
+  EXPECT_THAT(push(store_.vault(), store::sha256("m").hex()).error().text(), HasSubstr("more than digits of a hash"));
   EXPECT_EQ(store_.requests().size(), 0u);
 }
 
