@@ -27,7 +27,11 @@ std::ptrdiff_t folders_up(const fs::path& relative) { return std::count(relative
 
 Result<DeckFiles> files_of(const mesh::deck::Deck& deck) {
   std::map<fs::path, fs::path> on_disk;  // by the path relative to the main file's folder
-  for (const mesh::deck::SourceFile& file : deck.files) on_disk.emplace(file.relative.lexically_normal(), file.path);
+  std::map<fs::path, FileIdentity> read;
+  for (const mesh::deck::SourceFile& file : deck.files) {
+    on_disk.emplace(file.relative.lexically_normal(), file.path);
+    read.emplace(file.path, file.bytes.identity());
+  }
   for (const mesh::deck::CompanionFile& file : deck.companions) on_disk.emplace(file.relative.lexically_normal(), file.path);
   std::ptrdiff_t up = 0;
   for (const auto& [relative, path] : on_disk) {
@@ -47,7 +51,11 @@ Result<DeckFiles> files_of(const mesh::deck::Deck& deck) {
   const fs::path main = deck.files.front().path, folder = fs::canonical(fs::absolute(main).parent_path(), error);
   for (const auto& [relative, path] : on_disk)
     if (path != main && (folders_up(relative) > 0 || !lies_beneath(path, folder))) found.outside.push_back(path);
-  for (const auto& [relative, path] : on_disk) found.files.push_back({path, (prefix / relative).lexically_normal().generic_string()});
+  for (const auto& [relative, path] : on_disk) {
+    ipc::store::LocalFile file{path, (prefix / relative).lexically_normal().generic_string()};
+    if (const auto as_read = read.find(path); as_read != read.end()) file.as_read = as_read->second;
+    found.files.push_back(std::move(file));
+  }
   found.main = (prefix / deck.files.front().relative).lexically_normal().generic_string();
   return found;
 }

@@ -36,7 +36,7 @@ Result<keeping::Vault> open_vault(const VaultOptions& options, const Context& co
     return fail(address->text(), "isn't encrypted, so all on the way could read the models; write s3+https, or allow it with --plain-http");
   const std::chrono::seconds patience(options.patience_s);
   keeping::VaultOptions how;
-  how.line.silence = patience;
+  how.line.silence = std::max(patience / 2, std::chrono::seconds(1));  // so that a silent line is tried twice within the patience
   how.line.connect = std::min(how.line.connect, patience);
   how.retry.whole = patience;
   return keeping::Vault(std::move(*address), *settings, how, [&context] { return context.stop(); });

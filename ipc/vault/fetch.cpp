@@ -38,7 +38,7 @@ class VaultFetch {
     for (const store::SetFile& file : manifest->files)
       if (known.insert(file.hash).second)
         if (const Result<void> fetched = fetch_file(file, *receiving); !fetched) return fail(fetched.error());
-    if (const Result<void> finished = receiving->finish(*manifest); !finished) return fail(finished.error());
+    if (const Result<void> finished = receiving->finish(*manifest, [this] { return !told(); }); !finished) return fail(finished.error());
     model->bytes = manifest->bytes();
     model->files = manifest->files.size();
     return VaultFetched{std::move(*model), folder, folder / manifest->main, received_bytes_};

@@ -14,6 +14,8 @@ namespace {
 constexpr std::string_view kPieces = "pieces/", kLists = "lists/";
 constexpr std::string_view kListLine = "prismesh-pieces 1\n";
 constexpr std::size_t kHashDigits = 64;
+constexpr std::size_t kDigitsOfPart = 200;
+static_assert(2 * store::kMaxNameBytes <= 2 * kDigitsOfPart);
 constexpr std::chrono::seconds kClocksApart = std::chrono::minutes(30);  // a store takes clocks that are 15 min apart from its own
 
 std::string hex_of(std::string_view text) {
@@ -65,8 +67,10 @@ bool is_model_name(std::string_view text) {
 }
 
 std::string name_object(const store::ModelRecord& record) {
+  std::string digits = hex_of(record.name);
+  if (digits.size() > kDigitsOfPart) digits.insert(kDigitsOfPart, "/");
   return std::string(kNames) + record.model.hex() + "/" + std::to_string(record.when_s) + "-" + std::to_string(record.bytes) + "-" +
-         std::to_string(record.files) + "-" + hex_of(record.name);
+         std::to_string(record.files) + "-" + digits;
 }
 
 std::optional<store::ModelRecord> record_of_object(std::string_view object) {
@@ -79,7 +83,9 @@ std::optional<store::ModelRecord> record_of_object(std::string_view object) {
   record.model = *model;
   object.remove_prefix(kHashDigits + 1);
   if (!take_number(object, record.when_s) || !take_number(object, record.bytes) || !take_number(object, record.files)) return std::nullopt;
-  const std::optional<std::string> name = text_of_hex(object);
+  std::string digits(object);
+  if (digits.size() > kDigitsOfPart && digits[kDigitsOfPart] == '/') digits.erase(kDigitsOfPart, 1);
+  const std::optional<std::string> name = text_of_hex(digits);
   if (!name || !is_model_name(*name)) return std::nullopt;
   record.name = *name;
   return name_object(record) == whole ? std::optional(record) : std::nullopt;

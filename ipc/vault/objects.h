@@ -36,7 +36,8 @@ std::optional<store::ContentHash> model_of_object(std::string_view object);
 
 /// Text that people can call a model by: it can be shown, and can't be meant as a hash.
 bool is_model_name(std::string_view text);
-/// names/MODEL/WHEN-BYTES-FILES-NAME, the name in hexadecimal digits: its text may have any sign.
+/// names/MODEL/WHEN-BYTES-FILES-NAME, the name in hexadecimal digits: its text may have any sign. A `/` stands behind 200 of them, since
+/// stores on file systems take no longer parts than 255 bytes.
 std::string name_object(const store::ModelRecord& record);
 /// Nothing: it isn't what `name_object` writes.
 std::optional<store::ModelRecord> record_of_object(std::string_view object);

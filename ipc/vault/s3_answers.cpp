@@ -53,7 +53,8 @@ S3Refusal parse_refusal(std::string_view body) {
   pugi::xml_document document;
   if (!read_xml(document, body)) return {};
   const pugi::xml_node root = document.child("Error");
-  S3Refusal refusal{shown(root.child_value("Code"), kMaxCode), shown(root.child_value("Message"), kMaxMessage)};
+  S3Refusal refusal{shown(root.child_value("Code"), kMaxCode), shown(root.child_value("Message"), kMaxMessage),
+                    shown(root.child_value("Endpoint"), kMaxCode)};
   if (refusal.code.empty()) return {};
   return refusal;
 }

@@ -230,6 +230,7 @@ LineResult<S3Answer> S3Line::ask(const S3Request& request, std::string& content,
   HeaderList headers;
   // libcurl 7.88 takes the payload's hash for the signature from here, so that the store compares the body with it.
   add_header(headers, "x-amz-content-sha256: " + request.body_hash.hex());
+  if (!impl_->keys.session_token.empty()) add_header(headers, "x-amz-security-token: " + impl_->keys.session_token);
   CURLcode code = impl_->prepare(request, exchange, headers);
   if (code == CURLE_OK) code = curl_easy_perform(impl_->handle.get());
   if (code != CURLE_OK) return tl::unexpected(impl_->fault(code, exchange));

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <charconv>
+#include <chrono>
 #include <ctime>
 #include <map>
 #include <utility>
 
 #include "base/progress.h"
+#include "ipc/store/utf8.h"
 #include "ipc/vault/objects.h"
 
 namespace prismesh::ipc::vault {
@@ -16,12 +18,13 @@ namespace {
 using Method = S3Request::Method;
 
 constexpr std::size_t kMaxListed = 200'000;
+constexpr std::size_t kMaxRegion = 100;
 constexpr std::size_t kMaxKey = 1024;  // S3 has no longer ones
 
 constexpr int kWrongBytesMax = 3;  // in a row: then it isn't chance
 constexpr std::size_t kMaxListing = std::size_t{16} << 20;
 constexpr std::string_view kObjectsAtOnce = "1000";
-constexpr int kListsMax = 2000;
+constexpr int kListsMax = 500;
 
 /// RFC 3986, as signatures have it.
 std::string percent_encoded(std::string_view text) {
@@ -45,8 +48,14 @@ bool is_for_a_while(unsigned status) { return status == 408 || status == 429 || 
 
 /// Refusals of a body that came otherwise than it was sent.
 bool is_about_the_body(const std::string& code) {
-  return code == "BadDigest" || code == "XAmzContentSHA256Mismatch" || code == "IncompleteBody" || code == "RequestTimeout" ||
-         code == "InvalidDigest";
+  return code == "BadDigest" || code == "XAmzContentSHA256Mismatch" || code == "InvalidDigest";
+}
+
+/// 400, for a line that was cut or silent: no fault of what was asked.
+bool is_about_the_line(const S3Answer& answer) {
+  if (answer.status != 400) return false;
+  const std::string code = parse_refusal(answer.body).code;
+  return code == "IncompleteBody" || code == "RequestTimeout";
 }
 
 }  // namespace
@@ -62,21 +71,34 @@ Error Vault::refusal(const S3Answer& answer) const {
   if (said.code == "NoSuchBucket")
     return told("there is no bucket '" + line_.address().bucket + "'; make it there first, or correct the address");
   if (said.code == "RequestTimeTooSkewed") return told("this computer's clock differs from the store's; set it");
-  if (answer.status == 301 || answer.status == 307 || said.code == "AuthorizationHeaderMalformed")
-    return told("the bucket has another region or address (" + words + "); set AWS_REGION, or correct the address");
-  if (is_for_a_while(answer.status)) return told("can't answer now (" + words + ")");
+  if (answer.status == 301 || answer.status == 307 || said.code == "AuthorizationHeaderMalformed") {
+    const std::string region(answer.header("x-amz-bucket-region"));
+    const bool is_shown = !region.empty() && region.size() <= kMaxRegion && store::is_plain_utf8(region);
+    return told("the bucket has another region or address (" + words + "); set AWS_REGION" + (is_shown ? "=" + region : "") +
+                ", or correct the address" + (said.endpoint.empty() ? "" : ": its host is " + said.endpoint));
+  }
+  if (is_for_a_while(answer.status) || is_about_the_line(answer)) return told("can't answer now (" + words + ")");
   if (answer.status == 401 || answer.status == 403) return told("refuses these keys, or they may not do this (" + words + ")");
   return told(words);
 }
 
 Result<S3Answer> Vault::ask(const S3Request& request, std::string& content, std::size_t max_bytes) {
-  for (;;) {
-    const std::size_t before = content.size();
+  // A store that knows no parts begins anew each time: only what no try brought before is progress.
+  for (std::size_t most = content.size();;) {
+    const auto begun = std::chrono::steady_clock::now();
     LineResult<S3Answer> answer = line_.ask(request, content, max_bytes);
-    if (answer && is_for_a_while(answer->status)) answer = tl::unexpected(LineFault{refusal(*answer), true});
-    if (answer || content.size() > before) retrying_.line_is_good();
+    if (answer && answer->status == 416 && !content.empty()) {
+      content.clear();  // all bytes had come, but not the answer's end
+      answer = tl::unexpected(LineFault{refusal(*answer), true});
+    }
+    if (answer && (is_for_a_while(answer->status) || is_about_the_line(*answer)))
+      answer = tl::unexpected(LineFault{refusal(*answer), true});
+    const bool is_progress = content.size() > most;
+    most = std::max(most, content.size());
+    if (answer || is_progress) retrying_.line_is_good();
     if (answer) return std::move(*answer);
-    if (const Result<void> waited = retrying_.wait_after(answer.error()); !waited) return fail(waited.error());
+    const Result<void> waited = retrying_.wait_after(answer.error(), is_progress ? std::nullopt : std::optional(begun));
+    if (!waited) return fail(waited.error());
   }
 }
 

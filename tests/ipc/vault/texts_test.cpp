@@ -76,6 +76,17 @@ TEST(VaultObjects, have_names_that_are_read_again) {
   record.files = 3;
   EXPECT_EQ(record_of_object(name_object(record)), record);
   const std::string object = name_object(record);
+  record.name = std::string(200, 'x');
+  const std::string long_object = name_object(record);
+  EXPECT_EQ(record_of_object(long_object), record);
+  for (std::size_t at = 0; at < long_object.size();) {
+    const std::size_t end = std::min(long_object.find('/', at), long_object.size());
+    EXPECT_LE(end - at, 255u);
+    at = end + 1;
+  }
+  std::string unsplit = long_object;
+  unsplit.erase(unsplit.rfind('/'), 1);
+  EXPECT_FALSE(record_of_object(unsplit));
   for (const char* name : {"abcdef", "20261128", "", "a\nb"}) {
     store::ModelRecord other = record;
     other.name = name;

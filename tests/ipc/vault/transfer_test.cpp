@@ -306,6 +306,114 @@ TEST_F(VaultTransfer, tries_again_for_as_long_as_it_was_told) {
   EXPECT_EQ(store_.count("PUT") - before, 3u);
 }
 
+TEST_F(VaultTransfer, a_line_that_was_cut_or_silent_is_no_fault_of_the_bytes) {
+  for (const char* code : {"RequestTimeout", "IncompleteBody"}) {
+    write("main.k", code);
+    int left = 8;
+    store_.answer_instead([&left, code](const SeenRequest& request) -> std::optional<std::string> {
+      return request.method != "HEAD" && left-- > 0 ? std::optional(MemoryStore::refusal("400 No", code)) : std::nullopt;
+    });
+    const Result<VaultPushed> pushed = push(store_.vault());
+    ASSERT_TRUE(pushed) << pushed.error().text();
+    left = 8;
+    ASSERT_TRUE(fetch(store_.vault(), pushed->model.model.hex()));
+    fs::remove_all(folder_ / "back");
+    left = 1 << 30;
+    EXPECT_THAT(push(store_.vault(std::chrono::milliseconds(20))).error().text(), HasSubstr(std::string("can't answer now (") + code));
+  }
+}
+
+TEST_F(VaultTransfer, a_store_that_begins_anew_each_time_makes_no_progress) {
+  ASSERT_TRUE(push(store_.vault()));
+  const std::string first = large_.substr(0, kPieceBytes);
+  std::atomic<int> tries{0};
+  store_.answer_instead([&](const SeenRequest& request) -> std::optional<std::string> {
+    if (request.target.find(store::sha256(first).hex()) == std::string::npos) return std::nullopt;
+    // Two cuts in turn: each second try brings more than the one before, but never more than came already. Pauses grow only without
+    // progress.
+    return MemoryStore::answer("200 OK", first).substr(0, ++tries % 2 == 0 ? 9000 : 5000);
+  });
+  Vault vault = store_.vault(std::chrono::milliseconds(500), [&tries] { return tries > 30; });
+  const Result<VaultFetched> fetched = vault::fetch(vault, "a name", {folder_ / "back", {}});
+  ASSERT_FALSE(fetched);
+  EXPECT_FALSE(is_cancelled(fetched.error()));
+}
+
+TEST_F(VaultTransfer, an_answer_that_is_cut_behind_its_last_byte_is_asked_for_whole) {
+  ASSERT_TRUE(push(store_.vault()));
+  int cuts = 1;
+  store_.answer_instead([&cuts](const SeenRequest& request) -> std::optional<std::string> {
+    if (request.target.find(piece_object(store::sha256("main"))) == std::string::npos) return std::nullopt;
+    if (request.head.find("Range: bytes=4-") != std::string::npos) return MemoryStore::refusal("416 No", "InvalidRange");
+    if (cuts-- <= 0) return std::nullopt;
+    return "HTTP/1.1 200 OK\r\nConnection: close\r\nTransfer-Encoding: chunked\r\n\r\n4\r\nmain\r\n";
+  });
+  const Result<VaultFetched> fetched = fetch(store_.vault());
+  ASSERT_TRUE(fetched) << fetched.error().text();
+  expect_back();
+}
+
+TEST_F(VaultTransfer, a_fetch_stops_also_at_its_end) {
+  ASSERT_TRUE(push(store_.vault()));
+  Vault vault = store_.vault();
+  const Result<VaultFetched> fetched =
+      vault::fetch(vault, "a name", {folder_ / "back", [this](double) { return !fs::exists(folder_ / "back.fetching/whole"); }});
+  ASSERT_FALSE(fetched);
+  EXPECT_TRUE(is_cancelled(fetched.error())) << fetched.error().text();
+  EXPECT_FALSE(fs::exists(folder_ / "back"));
+  ASSERT_TRUE(fetch(store_.vault()));
+  expect_back();
+}
+
+TEST(VaultRetrying, silence_counts_from_the_beginning_of_the_first_try) {
+  const LineFault fault{Error{"store", 0, "it doesn't answer"}, true};
+  Retrying retrying({std::chrono::seconds(60), std::chrono::milliseconds(1)}, {});
+  const auto now = std::chrono::steady_clock::now();
+  EXPECT_TRUE(retrying.wait_after(fault, now - std::chrono::seconds(30)));
+  EXPECT_TRUE(retrying.wait_after(fault, now));
+  retrying.line_is_good();
+  EXPECT_FALSE(retrying.wait_after(fault, now - std::chrono::seconds(61)));
+  retrying.line_is_good();
+  EXPECT_TRUE(retrying.wait_after(fault));
+}
+
+TEST_F(VaultTransfer, tells_what_a_store_says_about_its_place) {
+  store_.answer_instead([](const SeenRequest& request) -> std::optional<std::string> {
+    if (request.method == "HEAD") return MemoryStore::answer("400 No", "");  // Amazon says no more to those
+    return MemoryStore::answer("301 No", "<Error><Code>PermanentRedirect</Code><Endpoint>b.s3.eu.example.com</Endpoint></Error>",
+                               "x-amz-bucket-region: eu-central-1\r\n");
+  });
+  const std::string told = push(store_.vault()).error().text();
+  EXPECT_THAT(told, HasSubstr("set AWS_REGION=eu-central-1, or correct the address: its host is b.s3.eu.example.com"));
+}
+
+TEST_F(VaultTransfer, keys_that_are_lent_have_a_token_that_is_signed) {
+  VaultSettings keys{std::nullopt, "here", "key", "secret", ""};
+  keys.session_token = std::string(3000, 't');
+  ASSERT_TRUE(push(Vault(store_.address(), keys, {}, {})));
+  for (const SeenRequest& request : store_.requests()) {
+    EXPECT_THAT(request.head, HasSubstr("x-amz-security-token: " + keys.session_token + "\r\n"));
+    EXPECT_THAT(request.head, ::testing::ContainsRegex("SignedHeaders=[^,]*x-amz-security-token"));
+  }
+}
+
+TEST_F(VaultTransfer, a_verification_takes_no_flipped_answer_for_damage) {
+  ASSERT_TRUE(push(store_.vault()));
+  int flips = 2;
+  store_.answer_instead([&flips](const SeenRequest& request) -> std::optional<std::string> {
+    if (request.target.find(piece_object(store::sha256("main"))) == std::string::npos || flips-- <= 0) return std::nullopt;
+    return MemoryStore::answer("200 OK", "mbin");
+  });
+  Vault vault = store_.vault();
+  EXPECT_TRUE(verify(vault, std::nullopt, {})->faults.empty());
+  // Another model that says another size of the same file isn't sound because this one is.
+  const std::string text = store::encode_manifest({"a.k", {{store::sha256("main"), 5, "a.k"}}});
+  store_.put("f/" + model_object(store::model_hash(text)), text);
+  const Result<Verified> verified = verify(vault, std::nullopt, {});
+  ASSERT_EQ(verified->faults.size(), 1u);
+  EXPECT_EQ(verified->faults[0].model, store::model_hash(text));
+}
+
 TEST_F(VaultTransfer, stops_when_it_is_told) {
   store_.answer_instead([](const SeenRequest&) { return std::optional(MemoryStore::refusal("503 No", "SlowDown")); });
   std::atomic<bool> stops{false};
