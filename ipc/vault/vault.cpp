@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <chrono>
 #include <ctime>
 #include <map>
 #include <utility>
@@ -85,7 +84,6 @@ Error Vault::refusal(const S3Answer& answer) const {
 Result<S3Answer> Vault::ask(const S3Request& request, std::string& content, std::size_t max_bytes) {
   // A store that knows no parts begins anew each time: only what no try brought before is progress.
   for (std::size_t most = content.size();;) {
-    const auto begun = std::chrono::steady_clock::now();
     LineResult<S3Answer> answer = line_.ask(request, content, max_bytes);
     if (answer && answer->status == 416 && !content.empty()) {
       content.clear();  // all bytes had come, but not the answer's end
@@ -97,7 +95,7 @@ Result<S3Answer> Vault::ask(const S3Request& request, std::string& content, std:
     most = std::max(most, content.size());
     if (answer || is_progress) retrying_.line_is_good();
     if (answer) return std::move(*answer);
-    const Result<void> waited = retrying_.wait_after(answer.error(), is_progress ? std::nullopt : std::optional(begun));
+    const Result<void> waited = retrying_.wait_after(answer.error(), line_.moved());
     if (!waited) return fail(waited.error());
   }
 }

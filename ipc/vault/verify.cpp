@@ -39,7 +39,12 @@ class Verification {
     Result<std::optional<std::string>> content = vault_.get_unchecked(object, max_bytes);
     // A line may change what comes: only what is wrong each time is damage.
     const auto is_wrong = [&] { return content && *content && hash && store::sha256(**content) != *hash; };
-    for (int tries = 1; tries < kReadTries && is_wrong(); ++tries) content = vault_.get_unchecked(object, max_bytes);
+    for (int tries = 1; tries < kReadTries && is_wrong(); ++tries) {
+      Result<std::optional<std::string>> again = vault_.get_unchecked(object, max_bytes);
+      if (!again && again.error().kind != ErrorKind::over_limit) return fail(again.error());
+      if (!again || !*again) break;  // a store may put away what it found damaged itself: the first answer tells more
+      content = std::move(again);
+    }
     if (!content) {
       if (content.error().kind == ErrorKind::over_limit) return Read{std::nullopt, "is longer than it was"};
       return fail(content.error());
