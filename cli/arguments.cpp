@@ -500,6 +500,7 @@ void add_vault(Parser& parser) {
   names_file(push_app->add_option("DECK", options->deck, "the deck's main file"))->required();
   push_app->add_option("--name", options->name, "the model's name there (default: the main file's)");
   push_app->add_flag("--resend", options->resend, "send also what is there: mends what `vault verify` names");
+  push_app->add_flag("--outside", options->outside, "send also files that the deck includes from outside its folder");
   add("list", Action::list, "list the models that are there");
   CLI::App* fetch_app = add("fetch", Action::fetch, "fetch a model; called again, it goes on where it stopped");
   fetch_app->add_option("MODEL", options->model, "its name, its hash, or six digits or more of the hash's beginning")->required();

@@ -224,6 +224,7 @@ struct VaultOptions {
   std::filesystem::path deck;                   ///< push
   std::string name;                             ///< push: of the model; empty: that of the main file
   bool resend = false;                          ///< push: also what is there
+  bool outside = false;                         ///< push: also files outside the deck's folder
   std::string model;                            ///< fetch; verify, empty: all
   std::optional<std::filesystem::path> output;  ///< fetch: a folder
 };

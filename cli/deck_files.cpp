@@ -13,13 +13,25 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Whether a file lies beneath a folder without its links. What can't be asked for counts as outside.
+bool lies_beneath(const fs::path& path, const fs::path& folder) {
+  std::error_code error;
+  const fs::path real = fs::canonical(path, error);
+  if (error) return false;
+  return std::mismatch(folder.begin(), folder.end(), real.begin(), real.end()).first == folder.end();
+}
+
 std::ptrdiff_t folders_up(const fs::path& relative) { return std::count(relative.begin(), relative.end(), fs::path("..")); }
 
 }  // namespace
 
 Result<DeckFiles> files_of(const mesh::deck::Deck& deck) {
   std::map<fs::path, fs::path> on_disk;  // by the path relative to the main file's folder
-  for (const mesh::deck::SourceFile& file : deck.files) on_disk.emplace(file.relative.lexically_normal(), file.path);
+  std::map<fs::path, FileIdentity> read;
+  for (const mesh::deck::SourceFile& file : deck.files) {
+    on_disk.emplace(file.relative.lexically_normal(), file.path);
+    read.emplace(file.path, file.bytes.identity());
+  }
   for (const mesh::deck::CompanionFile& file : deck.companions) on_disk.emplace(file.relative.lexically_normal(), file.path);
   std::ptrdiff_t up = 0;
   for (const auto& [relative, path] : on_disk) {
@@ -36,7 +48,14 @@ Result<DeckFiles> files_of(const mesh::deck::Deck& deck) {
   }
   DeckFiles found;
   found.leaves_folder = up > 0;
-  for (const auto& [relative, path] : on_disk) found.files.push_back({path, (prefix / relative).lexically_normal().generic_string()});
+  const fs::path main = deck.files.front().path, folder = fs::canonical(fs::absolute(main).parent_path(), error);
+  for (const auto& [relative, path] : on_disk)
+    if (path != main && (folders_up(relative) > 0 || !lies_beneath(path, folder))) found.outside.push_back(path);
+  for (const auto& [relative, path] : on_disk) {
+    ipc::store::LocalFile file{path, (prefix / relative).lexically_normal().generic_string()};
+    if (const auto as_read = read.find(path); as_read != read.end()) file.as_read = as_read->second;
+    found.files.push_back(std::move(file));
+  }
   found.main = (prefix / deck.files.front().relative).lexically_normal().generic_string();
   return found;
 }

@@ -16,6 +16,8 @@ struct DeckFiles {
   std::vector<ipc::store::LocalFile> files;
   std::string main;            ///< the path of the main file in the model
   bool leaves_folder = false;  ///< some files lie outside the main file's folder
+  /// Files that lie outside the main file's folder, by the names in the deck or by links in them.
+  std::vector<std::filesystem::path> outside;
 };
 
 /// All files that the deck was read from, and its companions, as they lie to each other. Where some lie outside the main file's folder, the

@@ -18,6 +18,7 @@ namespace {
 namespace keeping = ipc::vault;
 
 constexpr std::size_t kListedDigits = 12;
+constexpr std::size_t kNamedFiles = 10;
 
 int refused(const Context& context, const Error& error) {
   say(context, error);
@@ -35,7 +36,7 @@ Result<keeping::Vault> open_vault(const VaultOptions& options, const Context& co
     return fail(address->text(), "isn't encrypted, so all on the way could read the models; write s3+https, or allow it with --plain-http");
   const std::chrono::seconds patience(options.patience_s);
   keeping::VaultOptions how;
-  how.line.silence = patience;
+  how.line.silence = std::max(patience / 2, std::chrono::seconds(1));  // so that a silent line is tried twice within the patience
   how.line.connect = std::min(how.line.connect, patience);
   how.retry.whole = patience;
   return keeping::Vault(std::move(*address), *settings, how, [&context] { return context.stop(); });
@@ -43,9 +44,19 @@ Result<keeping::Vault> open_vault(const VaultOptions& options, const Context& co
 
 std::string called(const ipc::store::ModelRecord& model) { return model.name.empty() ? "(no name)" : printable(model.name); }
 
+/// A deck of somebody else may include any file of this computer, and who reads the bucket would have it.
+Error sends_outside(const VaultOptions& options, const DeckFiles& files) {
+  std::string named;
+  for (std::size_t i = 0; i < files.outside.size() && i < kNamedFiles; ++i) named += (i == 0 ? "" : ", ") + files.outside[i].string();
+  if (files.outside.size() > kNamedFiles) named += " and " + std::to_string(files.outside.size() - kNamedFiles) + " more";
+  return Error{options.deck.string(), 0,
+               "includes files outside its folder: " + named + "; nothing was sent. Send them too with --outside"};
+}
+
 int push_to_vault(keeping::Vault& vault, const VaultOptions& options, const Common& common, const Context& context) {
   const Result<DeckFiles> files = files_of_deck(options.deck, common, context);
   if (!files) return refused(context, files.error());
+  if (!files->outside.empty() && !options.outside) return refused(context, sends_outside(options, *files));
   Result<keeping::VaultPushed> pushed = fail("", "");
   {
     MonotonicClock clock;

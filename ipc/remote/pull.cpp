@@ -47,7 +47,7 @@ class Pull {
     if (!receiving) return fail(receiving.error());
     all_bytes_ = manifest->bytes();
     if (const Result<void> fetched = fetch_all(*manifest, model->record.model, *receiving); !fetched) return fail(fetched.error());
-    if (const Result<void> finished = receiving->finish(*manifest); !finished) return fail(finished.error());
+    if (const Result<void> finished = receiving->finish(*manifest, [this] { return !told(); }); !finished) return fail(finished.error());
     return Pulled{std::move(*model), folder, folder / manifest->main, received_bytes_};
   }
 

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/error.h"
@@ -10,8 +11,12 @@
 
 namespace prismesh::ipc::store {
 
-/// The place of the model that is meant. `wanted`: its hash, at least six digits of the beginning of its hash, or its whole name. `where`:
-/// who has the models; `lists`: the command that lists them. Errors: there is none, or there are several.
+/// Whether a text may be meant as a hash or its beginning: six or more hexadecimal digits and nothing else. A vault takes no such name.
+bool may_be_hash(std::string_view text);
+
+/// The place of the model that is meant. `wanted`: its hash, at least six digits of the beginning of its hash, or its whole name; a whole
+/// hash is never compared with names, which anybody may choose. `where`: who has the models; `lists`: the command that lists them. Errors:
+/// there is none, or there are several.
 Result<std::size_t> choose_model(const std::vector<ModelRecord>& models, const std::string& wanted, const std::string& where,
                                  const std::string& lists);
 

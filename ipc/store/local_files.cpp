@@ -11,6 +11,15 @@
 
 namespace prismesh::ipc::store {
 
+namespace {
+
+/// Another name or other rights make no other version.
+bool is_same_version(const FileIdentity& a, const FileIdentity& b) {
+  return a.device == b.device && a.inode == b.inode && a.size == b.size && a.modified_ns == b.modified_ns;
+}
+
+}  // namespace
+
 Result<OpenedFile> open_local(const std::filesystem::path& path) {
   OpenedFile opened{Descriptor(::open(path.c_str(), O_RDONLY | O_CLOEXEC)), 0};
   struct stat status {};
@@ -41,6 +50,11 @@ Result<LocalSet> hash_local(const std::vector<LocalFile>& files, const std::stri
       if (seen && !bytes.empty()) seen(which, bytes);
       at += *got;
       if (*got < piece.size()) break;
+    }
+    // The deck's other files are known from what was read, so nothing of another version may come beside them.
+    if (file.as_read) {
+      const Result<FileIdentity> now = identify_file(file.disk);
+      if (!now || !is_same_version(*now, *file.as_read)) return fail(file.disk.string(), "changed while it was read; push it again");
     }
     set.manifest.files.push_back({sum.hash(), at, file.path});
     if (known.insert(sum.hash()).second) set.contents.push_back({file.disk, set.manifest.files.back()});

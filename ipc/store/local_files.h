@@ -4,11 +4,13 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "base/error.h"
+#include "base/file.h"
 #include "ipc/store/manifest.h"
 #include "ipc/wire/descriptor.h"
 
@@ -17,7 +19,8 @@ namespace prismesh::ipc::store {
 /// A file of a model and where it lies here.
 struct LocalFile {
   std::filesystem::path disk;
-  std::string path;  ///< in the model
+  std::string path;                                    ///< in the model
+  std::optional<FileIdentity> as_read = std::nullopt;  ///< when the deck was read; nothing: it wasn't read
 };
 
 struct OpenedFile {
@@ -43,7 +46,8 @@ struct LocalSet {
 };
 
 /// Hashes the files. `main`: the path of the main file, one of `files`. `told`: called after each piece; false: stop. `seen`: called with
-/// each piece, and with the place of its file in `files`. Errors: a file can't be read; a path that a model can't have; stopped.
+/// each piece, and with the place of its file in `files`. Errors: a file can't be read, or isn't the one
+/// that was read; a path that a model can't have; stopped.
 Result<LocalSet> hash_local(const std::vector<LocalFile>& files, const std::string& main, const std::function<bool()>& told,
                             const std::function<void(std::size_t file, std::string_view piece)>& seen = {});
 

@@ -121,7 +121,7 @@ Result<Descriptor> Reader::open_file(const SetFile& file) const {
   return opened;
 }
 
-Result<void> Reader::lay_out(const Manifest& manifest, const fs::path& into) const {
+Result<void> Reader::lay_out(const Manifest& manifest, const fs::path& into, const Stop& stop) const {
   for (const SetFile& file : manifest.files) {
     if (const std::string fault = path_fault(file.path); !fault.empty()) return fail(file.path, "the path " + fault);
     const Result<Descriptor> source = open_file(file);
@@ -131,7 +131,8 @@ Result<void> Reader::lay_out(const Manifest& manifest, const fs::path& into) con
     const Result<Descriptor> target = place->first.create(place->second);
     if (!target) return fail(target.error());
     Sha256 hash;
-    const Result<void> copied = for_each_piece(*source, file.path, [&](std::string_view piece, std::uint64_t offset) {
+    const Result<void> copied = for_each_piece(*source, file.path, [&](std::string_view piece, std::uint64_t offset) -> Result<void> {
+      if (stop && stop()) return fail(cancelled());
       hash.add(piece);
       return write_at(*target, piece, offset, into / file.path);
     });

@@ -9,6 +9,7 @@
 #include "ipc/store/folder.h"
 #include "ipc/store/manifest.h"
 #include "ipc/store/record.h"
+#include "ipc/wire/line_fault.h"
 
 namespace prismesh::ipc::store {
 
@@ -37,8 +38,8 @@ class Reader {
   /// One file of a model, without a check of its bytes. Errors: it isn't there, is known to be damaged, or has another size.
   Result<Descriptor> open_file(const SetFile& file) const;
   /// Copies the model's files under their paths into an empty folder, and checks every byte of them. Makes files that their owner may
-  /// write. Errors: a file is damaged or missing (named); what was copied so far remains.
-  Result<void> lay_out(const Manifest& manifest, const std::filesystem::path& into) const;
+  /// write. Errors: a file is damaged or missing (named), `stop`; what was copied so far remains.
+  Result<void> lay_out(const Manifest& manifest, const std::filesystem::path& into, const Stop& stop = {}) const;
 
   const std::filesystem::path& path() const { return root_.path(); }
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/file.h"
+#include "base/progress.h"
 #include "ipc/store/reading.h"
 #include "ipc/wire/server.h"
 
@@ -21,15 +22,20 @@ constexpr std::size_t kShownHashDigits = 8;
 
 Result<void> check_free(const fs::path& folder) {
   std::error_code error;
+  const fs::path named = folder.has_filename() ? folder : folder.parent_path();
+  // Its name is given last, by renaming, which none of these can take.
+  if (named.filename() == "." || named.filename() == "..") return fail(folder.string(), "is no name for a new folder; name one with -o");
+  if (fs::is_symlink(fs::symlink_status(named, error))) return fail(folder.string(), "is a link; name another folder with -o");
   if (!fs::exists(fs::symlink_status(folder, error))) return {};
   if (fs::is_directory(folder, error) && fs::is_empty(folder, error) && !error) return {};
   return fail(folder.string(), "is there already; name another folder with -o");
 }
 
 /// All files and folders beneath, and the folder itself.
-Result<void> flush_tree(const fs::path& folder) {
+Result<void> flush_tree(const fs::path& folder, const Stop& stop) {
   std::error_code error;
-  const auto flush = [](const fs::path& path) -> Result<void> {
+  const auto flush = [&stop](const fs::path& path) -> Result<void> {
+    if (stop && stop()) return fail(cancelled());
     const Descriptor opened(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW));
     if (!opened) return fail(path.string(), std::string("can't be flushed to disk: ") + std::strerror(errno));
     return flush_file(opened, path);
@@ -72,7 +78,7 @@ Result<ReceivedFile> Receiving::file(const ContentHash& hash) const {
   return ReceivedFile{std::move(*disk), shard->path() / name, is_begun};
 }
 
-Result<void> Receiving::finish(const Manifest& manifest) const {
+Result<void> Receiving::finish(const Manifest& manifest, const Stop& stop) const {
   const Result<Reader> reader = Reader::open(unfinished_);
   if (!reader) return fail(reader.error());
   const fs::path whole = unfinished_ / "whole";
@@ -80,10 +86,10 @@ Result<void> Receiving::finish(const Manifest& manifest) const {
   fs::remove_all(whole, error);
   fs::create_directory(whole, error);
   if (error) return fail(whole.string(), "can't be made: " + error.message());
-  if (const Result<void> laid_out = reader->lay_out(manifest, whole); !laid_out) return laid_out;
+  if (const Result<void> laid_out = reader->lay_out(manifest, whole, stop); !laid_out) return laid_out;
   fs::permissions(
       whole, fs::perms::owner_all | fs::perms::group_read | fs::perms::group_exec | fs::perms::others_read | fs::perms::others_exec, error);
-  if (const Result<void> flushed = flush_tree(whole); !flushed) return flushed;
+  if (const Result<void> flushed = flush_tree(whole, stop); !flushed) return flushed;
   fs::rename(whole, folder_, error);
   if (error) return fail(folder_.string(), "can't be made: " + error.message());
   const fs::path named = folder_.has_filename() ? folder_ : folder_.parent_path();

@@ -9,6 +9,7 @@
 #include "ipc/store/folder.h"
 #include "ipc/store/manifest.h"
 #include "ipc/wire/descriptor.h"
+#include "ipc/wire/line_fault.h"
 
 namespace prismesh::ipc::store {
 
@@ -24,15 +25,16 @@ struct ReceivedFile {
 
 class Receiving {
  public:
-  /// Files lie in `folder` with `ending` behind its name until all are there. Errors: `folder` is there and not empty; the one beside it
-  /// can't be made; another process works there.
+  /// Files lie in `folder` with `ending` behind its name until all are there. Errors: `folder` is there and not empty, is a link, or ends
+  /// in
+  /// `.` or `..`; the one beside it can't be made; another process works there.
   static Result<Receiving> begin(std::filesystem::path folder, const std::string& ending);
 
   /// The file for a content, made if it is missing.
   Result<ReceivedFile> file(const ContentHash& hash) const;
   /// Puts all files under their names, compares every byte with the manifest's hashes, flushes them, and gives the folder its name. Errors:
-  /// a file doesn't match (named), the disk; then the folder isn't there, and what came stays.
-  Result<void> finish(const Manifest& manifest) const;
+  /// a file doesn't match (named), the disk, `stop`; then the folder isn't there, and what came stays.
+  Result<void> finish(const Manifest& manifest, const Stop& stop) const;
 
  private:
   Receiving(std::filesystem::path folder, std::filesystem::path unfinished, Descriptor lock, Folder content)

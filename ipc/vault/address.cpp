@@ -40,6 +40,10 @@ bool VaultAddress::is_loopback() const {
 }
 
 Result<VaultAddress> parse_vault_address(std::string_view text) {
+  // First, and not shown: what stands before the @ is a secret.
+  if (text.find('@') != std::string_view::npos)
+    return fail("",
+                "an address of a vault has no credentials in it; they come from AWS_ACCESS_KEY_ID and AWS_SECRET_ACCESS_KEY, or a file");
   VaultAddress address;
   std::string_view rest = text;
   if (rest.starts_with(kEncrypted)) {
@@ -50,10 +54,6 @@ Result<VaultAddress> parse_vault_address(std::string_view text) {
   } else {
     return no_vault(text);
   }
-  // Not shown: what stands before the @ is a secret.
-  if (rest.find('@') != std::string_view::npos)
-    return fail("",
-                "an address of a vault has no credentials in it; they come from AWS_ACCESS_KEY_ID and AWS_SECRET_ACCESS_KEY, or a file");
   const std::size_t slash = rest.find('/');
   if (slash == std::string_view::npos) return no_vault(text);
   std::optional<HostPort> place = parse_host_port(rest.substr(0, slash));

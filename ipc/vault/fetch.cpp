@@ -18,6 +18,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kFetching = ".fetching";
+constexpr const char* kResend = "; push the model again with --resend";
+constexpr int kListTries = 3;  // a list has no hash of its own: the line may have changed it
 
 class VaultFetch {
  public:
@@ -36,7 +38,7 @@ class VaultFetch {
     for (const store::SetFile& file : manifest->files)
       if (known.insert(file.hash).second)
         if (const Result<void> fetched = fetch_file(file, *receiving); !fetched) return fail(fetched.error());
-    if (const Result<void> finished = receiving->finish(*manifest); !finished) return fail(finished.error());
+    if (const Result<void> finished = receiving->finish(*manifest, [this] { return !told(); }); !finished) return fail(finished.error());
     model->bytes = manifest->bytes();
     model->files = manifest->files.size();
     return VaultFetched{std::move(*model), folder, folder / manifest->main, received_bytes_};
@@ -73,7 +75,7 @@ class VaultFetch {
     const Result<std::optional<std::string>> content = vault_.get(piece_object(piece), piece, bytes);
     if (!content) return fail(content.error());
     if (!*content) return fail(vault_.name(), piece_object(piece) + " of " + file.path + " isn't there; push the model again");
-    if ((*content)->size() != bytes) return fail(vault_.name(), "has a list of pieces for " + file.path + " that isn't right");
+    if ((*content)->size() != bytes) return fail(vault_.name(), "has a list of pieces for " + file.path + " that isn't right" + kResend);
     if (const Result<void> written = store::write_at(received.disk, **content, at, received.shown); !written) return written;
     received_bytes_ += bytes;
     return {};
@@ -107,9 +109,14 @@ Result<store::ModelRecord> find_model(Vault& vault, const std::string& wanted) {
   }
   const Result<std::vector<store::ModelRecord>> all = models(vault);
   if (!all) return fail(all.error());
-  const Result<std::size_t> chosen = store::choose_model(*all, wanted, vault.name(), "prismesh vault list");
+  // What a model was called earlier counts where none is called so now.
+  const bool is_known =
+      store::may_be_hash(wanted) || std::any_of(all->begin(), all->end(), [&](const auto& model) { return model.name == wanted; });
+  const Result<std::vector<store::ModelRecord>> named = is_known ? all : models(vault, wanted);
+  if (!named) return fail(named.error());
+  const Result<std::size_t> chosen = store::choose_model(*named, wanted, vault.name(), "prismesh vault list");
   if (!chosen) return fail(chosen.error());
-  return (*all)[*chosen];
+  return (*named)[*chosen];
 }
 
 Result<store::Manifest> get_manifest(Vault& vault, const store::ContentHash& model) {
@@ -126,12 +133,15 @@ Result<store::Manifest> get_manifest(Vault& vault, const store::ContentHash& mod
 Result<std::vector<store::ContentHash>> get_pieces(Vault& vault, const store::SetFile& file) {
   if (piece_count(file.bytes) == 0) return std::vector<store::ContentHash>();
   if (piece_count(file.bytes) == 1) return std::vector<store::ContentHash>{file.hash};
-  const Result<std::optional<std::string>> text = vault.get_unchecked(list_object(file.hash), kMaxListBytes);
-  if (!text) return fail(text.error());
-  if (!*text) return fail(vault.name(), list_object(file.hash) + " of " + file.path + " isn't there; push the model again");
-  Result<std::vector<store::ContentHash>> pieces = decode_pieces(**text, file.bytes);
-  if (!pieces) return fail(vault.name(), list_object(file.hash) + " of " + file.path + " isn't taken: " + pieces.error().message);
-  return pieces;
+  for (int tries = 1;; ++tries) {
+    const Result<std::optional<std::string>> text = vault.get_unchecked(list_object(file.hash), kMaxListBytes);
+    if (!text) return fail(text.error());
+    if (!*text) return fail(vault.name(), list_object(file.hash) + " of " + file.path + " isn't there; push the model again");
+    Result<std::vector<store::ContentHash>> pieces = decode_pieces(**text, file.bytes);
+    if (pieces) return pieces;
+    if (tries == kListTries)
+      return fail(vault.name(), list_object(file.hash) + " of " + file.path + " isn't taken: " + pieces.error().message + kResend);
+  }
 }
 
 Result<VaultFetched> fetch(Vault& vault, const std::string& wanted, const VaultFetchOptions& options) {

@@ -2,7 +2,9 @@
 
 #include <array>
 #include <charconv>
+#include <chrono>
 
+#include "ipc/store/choosing.h"
 #include "ipc/store/utf8.h"
 
 namespace prismesh::ipc::vault {
@@ -12,6 +14,9 @@ namespace {
 constexpr std::string_view kPieces = "pieces/", kLists = "lists/";
 constexpr std::string_view kListLine = "prismesh-pieces 1\n";
 constexpr std::size_t kHashDigits = 64;
+constexpr std::size_t kDigitsOfPart = 200;
+static_assert(2 * store::kMaxNameBytes <= 2 * kDigitsOfPart);
+constexpr std::chrono::seconds kClocksApart = std::chrono::minutes(30);  // a store takes clocks that are 15 min apart from its own
 
 std::string hex_of(std::string_view text) {
   constexpr std::string_view kHexDigits = "0123456789abcdef";
@@ -57,9 +62,15 @@ std::optional<store::ContentHash> model_of_object(std::string_view object) {
   return store::parse_content_hash(object.substr(kModels.size()));
 }
 
+bool is_model_name(std::string_view text) {
+  return !text.empty() && text.size() <= store::kMaxNameBytes && store::is_plain_utf8(text) && !store::may_be_hash(text);
+}
+
 std::string name_object(const store::ModelRecord& record) {
+  std::string digits = hex_of(record.name);
+  if (digits.size() > kDigitsOfPart) digits.insert(kDigitsOfPart, "/");
   return std::string(kNames) + record.model.hex() + "/" + std::to_string(record.when_s) + "-" + std::to_string(record.bytes) + "-" +
-         std::to_string(record.files) + "-" + hex_of(record.name);
+         std::to_string(record.files) + "-" + digits;
 }
 
 std::optional<store::ModelRecord> record_of_object(std::string_view object) {
@@ -72,10 +83,21 @@ std::optional<store::ModelRecord> record_of_object(std::string_view object) {
   record.model = *model;
   object.remove_prefix(kHashDigits + 1);
   if (!take_number(object, record.when_s) || !take_number(object, record.bytes) || !take_number(object, record.files)) return std::nullopt;
-  const std::optional<std::string> name = text_of_hex(object);
-  if (!name || name->empty() || name->size() > store::kMaxNameBytes || !store::is_plain_utf8(*name)) return std::nullopt;
+  std::string digits(object);
+  if (digits.size() > kDigitsOfPart && digits[kDigitsOfPart] == '/') digits.erase(kDigitsOfPart, 1);
+  const std::optional<std::string> name = text_of_hex(digits);
+  if (!name || !is_model_name(*name)) return std::nullopt;
   record.name = *name;
   return name_object(record) == whole ? std::optional(record) : std::nullopt;
+}
+
+std::int64_t name_time(const store::ModelRecord& name, std::int64_t now_s) {
+  return name.when_s - now_s > kClocksApart.count() ? 0 : name.when_s;
+}
+
+bool is_newer_name(const store::ModelRecord& a, const store::ModelRecord& b, std::int64_t now_s) {
+  const std::int64_t of_a = name_time(a, now_s), of_b = name_time(b, now_s);
+  return of_a != of_b ? of_a > of_b : a.name > b.name;
 }
 
 std::uint64_t piece_count(std::uint64_t file_bytes) { return file_bytes / kPieceBytes + (file_bytes % kPieceBytes != 0 ? 1 : 0); }

@@ -34,10 +34,17 @@ std::string model_object(const store::ContentHash& model);
 /// The model of models/HASH; nothing: it isn't one.
 std::optional<store::ContentHash> model_of_object(std::string_view object);
 
-/// names/MODEL/WHEN-BYTES-FILES-NAME, the name in hexadecimal digits: its text may have any sign.
+/// Text that people can call a model by: it can be shown, and can't be meant as a hash.
+bool is_model_name(std::string_view text);
+/// names/MODEL/WHEN-BYTES-FILES-NAME, the name in hexadecimal digits: its text may have any sign. A `/` stands behind 200 of them, since
+/// stores on file systems take no longer parts than 255 bytes.
 std::string name_object(const store::ModelRecord& record);
 /// Nothing: it isn't what `name_object` writes.
 std::optional<store::ModelRecord> record_of_object(std::string_view object);
+
+/// The time of a name, to compare with others of its model. One in the future counts as 0, so that no wrong clock names a model for good.
+std::int64_t name_time(const store::ModelRecord& name, std::int64_t now_s);
+bool is_newer_name(const store::ModelRecord& a, const store::ModelRecord& b, std::int64_t now_s);
 
 std::uint64_t piece_count(std::uint64_t file_bytes);
 std::string encode_pieces(std::span<const store::ContentHash> pieces);

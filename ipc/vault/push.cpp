@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "ipc/store/folder.h"
-#include "ipc/store/utf8.h"
 #include "ipc/vault/objects.h"
 
 namespace prismesh::ipc::vault {
@@ -29,16 +28,19 @@ class VaultPush {
     std::map<std::string, const std::vector<store::ContentHash>*> pieces_of;  // by the path in the model
     for (std::size_t i = 0; i < files.size(); ++i) pieces_of[files[i].path] = &pieces[i];
     if (const Result<void> described = describe(*set); !described) return fail(described.error());
+    // The first request: where a store refuses a list it says why, which it can't in an answer to HEAD.
+    if (const Result<void> known = keep_name(); !known) return fail(known.error());
     for (const store::LocalContent& content : set->contents) all_bytes_ += content.is.bytes;
     const Result<bool> is_there = has(model_object(pushed_.model.model), set->text.size());
     if (!is_there) return fail(is_there.error());
     for (const store::LocalContent& content : set->contents)
       if (const Result<void> sent = send(content, *pieces_of[content.is.path]); !sent) return fail(sent.error());
     pushed_.pieces = known_.size();
-    if (const Result<void> named = name(); !named) return fail(named.error());
-    if (const Result<void> put = put_missing(model_object(pushed_.model.model), set->text, pushed_.model.model); !put)
+    if (is_new_name_)
+      if (const Result<void> named = put_name(); !named) return fail(named.error());
+    if (const Result<void> put = put_small(model_object(pushed_.model.model), set->text, pushed_.model.model); !put)
       return fail(put.error());
-    pushed_.was_there = *is_there && pushed_.sent_pieces == 0;
+    pushed_.was_there = *is_there && pushed_.sent_pieces == 0 && !sent_small_;
     return std::move(pushed_);
   }
 
@@ -52,9 +54,10 @@ class VaultPush {
     model.when_s = options_.now_s;
     model.bytes = set.manifest.bytes();
     model.files = set.manifest.files.size();
-    if (model.name.empty() || model.name.size() > store::kMaxNameBytes || !store::is_plain_utf8(model.name))
-      return fail(set.manifest.main, "a model's name is text of at most " + std::to_string(store::kMaxNameBytes) +
-                                         " bytes without control characters; give one with --name");
+    if (!is_model_name(model.name))
+      return fail(set.manifest.main,
+                  "a model's name is text of at most " + std::to_string(store::kMaxNameBytes) +
+                      " bytes without control characters, and more than digits of a hash (0-9, a-f); give one with --name");
     return {};
   }
 
@@ -64,12 +67,14 @@ class VaultPush {
     return *size == bytes;
   }
 
-  Result<void> put_missing(const std::string& object, std::string_view bytes, const store::ContentHash& hash) {
+  /// A list or a manifest, unless the same bytes are there: damage of the same size is found here, where it can be mended.
+  Result<void> put_small(const std::string& object, std::string_view bytes, const store::ContentHash& hash) {
     if (!options_.sends_all) {
-      const Result<bool> is_there = has(object, bytes.size());
-      if (!is_there) return fail(is_there.error());
-      if (*is_there) return {};
+      const Result<std::optional<std::string>> there = vault_.get_unchecked(object, bytes.size());
+      if (!there && there.error().kind != ErrorKind::over_limit) return fail(there.error());
+      if (there && *there && **there == bytes) return {};
     }
+    sent_small_ = true;
     return vault_.put(object, bytes, hash);
   }
 
@@ -89,7 +94,7 @@ class VaultPush {
     if (pieces.size() < 2) return {};
     const std::string list = encode_pieces(pieces);
     if (list.size() > kMaxListBytes) return fail(content.disk.string(), "is too large for a vault");
-    return put_missing(list_object(content.is.hash), list, store::sha256(list));
+    return put_small(list_object(content.is.hash), list, store::sha256(list));
   }
 
   Result<void> send_piece(const store::LocalContent& content, const Descriptor& file, std::uint64_t at, std::size_t bytes,
@@ -109,24 +114,33 @@ class VaultPush {
     return {};
   }
 
-  /// A model that has the name already keeps the time of that.
-  Result<void> name() {
-    const std::string own = name_object(pushed_.model);
-    const Result<std::vector<ListedObject>> names = vault_.list(own.substr(0, own.rfind('/') + 1));
+  /// A model that has names keeps the newest, unless the user gives another.
+  Result<void> keep_name() {
+    store::ModelRecord& model = pushed_.model;
+    const Result<std::vector<ListedObject>> names = vault_.list(std::string(kNames) + model.model.hex() + "/");
     if (!names) return fail(names.error());
+    std::optional<store::ModelRecord> newest;
     for (const ListedObject& object : *names)
-      if (const auto record = record_of_object(object.key); record && record->name == pushed_.model.name) {
-        pushed_.model.when_s = record->when_s;
-        return {};
-      }
-    return vault_.put(own, pushed_.model.name, store::sha256(pushed_.model.name));
+      if (auto record = record_of_object(object.key); record && (!newest || is_newer_name(*record, *newest, options_.now_s)))
+        newest = std::move(record);
+    is_new_name_ = !newest || (!options_.name.empty() && newest->name != options_.name);
+    if (newest && !is_new_name_) {
+      model.name = newest->name;
+      model.when_s = newest->when_s;
+    } else if (newest && name_time(*newest, options_.now_s) >= model.when_s) {
+      model.when_s = newest->when_s + 1;  // within the same second, or by a clock that is ahead
+    }
+    return {};
   }
+
+  Result<void> put_name() { return vault_.put(name_object(pushed_.model), pushed_.model.name, store::sha256(pushed_.model.name)); }
 
   Vault& vault_;
   const VaultPushOptions& options_;
   VaultPushed pushed_;
   std::set<store::ContentHash> known_;  ///< pieces that were asked for
   std::string piece_;
+  bool is_new_name_ = false, sent_small_ = false;
   std::uint64_t all_bytes_ = 0, done_bytes_ = 0;
   double fraction_ = 0;
 };

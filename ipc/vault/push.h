@@ -14,7 +14,7 @@
 namespace prismesh::ipc::vault {
 
 struct VaultPushOptions {
-  std::string name;        ///< for people; empty: that of the main file
+  std::string name;        ///< for people; empty: the one that the model has there, else that of the main file
   std::int64_t now_s = 0;  ///< since 1970
   bool sends_all = false;  ///< also what the vault has
   Progress progress;

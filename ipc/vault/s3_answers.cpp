@@ -11,6 +11,7 @@ namespace prismesh::ipc::vault {
 namespace {
 
 constexpr std::size_t kMaxCode = 100, kMaxMessage = 500;
+constexpr std::size_t kMaxToken = 4096;  // it goes into an address
 
 /// Only texts, and the references that XML itself defines.
 bool read_xml(pugi::xml_document& document, std::string_view body) {
@@ -44,6 +45,7 @@ Result<ObjectList> parse_object_list(std::string_view body) {
   if (goes_on != "true" && goes_on != "false") return no_list();
   if (goes_on == "true") list.next = root.child_value("NextContinuationToken");
   if (goes_on == "true" && list.next.empty()) return no_list();
+  if (list.next.size() > kMaxToken) return fail("", "says in more than " + std::to_string(kMaxToken) + " bytes where its list goes on");
   return list;
 }
 
@@ -51,7 +53,8 @@ S3Refusal parse_refusal(std::string_view body) {
   pugi::xml_document document;
   if (!read_xml(document, body)) return {};
   const pugi::xml_node root = document.child("Error");
-  S3Refusal refusal{shown(root.child_value("Code"), kMaxCode), shown(root.child_value("Message"), kMaxMessage)};
+  S3Refusal refusal{shown(root.child_value("Code"), kMaxCode), shown(root.child_value("Message"), kMaxMessage),
+                    shown(root.child_value("Endpoint"), kMaxCode)};
   if (refusal.code.empty()) return {};
   return refusal;
 }

@@ -21,12 +21,13 @@ struct ObjectList {
   std::string next;  ///< asks for what follows; empty: nothing does
 };
 
-/// Errors: another form; more follows, but not where.
+/// Errors: another form; more follows, but not where, or in more than 4 KiB.
 Result<ObjectList> parse_object_list(std::string_view body);
 
 struct S3Refusal {
-  std::string code;     ///< "NoSuchBucket"; empty: there is none that can be shown
-  std::string message;  ///< may be empty
+  std::string code;      ///< "NoSuchBucket"; empty: there is none that can be shown
+  std::string message;   ///< may be empty
+  std::string endpoint;  ///< the bucket's own host; usually empty
 };
 S3Refusal parse_refusal(std::string_view body);
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
-#include <stdexcept>
+#include <new>
 #include <utility>
 
 #include <curl/curl.h>
@@ -35,6 +35,9 @@ struct Exchange {
   bool is_first = true;
   std::string fault;  ///< why the answer isn't taken
   ErrorKind kind = ErrorKind::failure;
+  std::chrono::steady_clock::time_point moved = std::chrono::steady_clock::now();
+  std::chrono::seconds silence{0};  ///< patience without a byte
+  bool is_silent = false;           ///< it is over
 };
 
 std::size_t refuse(Exchange& exchange, const char* why) {
@@ -44,6 +47,7 @@ std::size_t refuse(Exchange& exchange, const char* why) {
 
 std::size_t take_header(char* bytes, std::size_t, std::size_t size, void* held) {
   Exchange& exchange = *static_cast<Exchange*>(held);
+  exchange.moved = std::chrono::steady_clock::now();
   std::string_view line(bytes, size);
   while (line.ends_with('\n') || line.ends_with('\r')) line.remove_suffix(1);
   if (line.starts_with("HTTP/")) {
@@ -64,6 +68,7 @@ std::size_t take_header(char* bytes, std::size_t, std::size_t size, void* held) 
 
 std::size_t take_body(char* bytes, std::size_t, std::size_t size, void* held) {
   Exchange& exchange = *static_cast<Exchange*>(held);
+  exchange.moved = std::chrono::steady_clock::now();
   long status = 0;
   curl_easy_getinfo(exchange.handle, CURLINFO_RESPONSE_CODE, &status);
   if (status != 200 && status != 206) {
@@ -87,6 +92,7 @@ std::size_t take_body(char* bytes, std::size_t, std::size_t size, void* held) {
 
 std::size_t give_body(char* bytes, std::size_t, std::size_t size, void* held) {
   Exchange& exchange = *static_cast<Exchange*>(held);
+  exchange.moved = std::chrono::steady_clock::now();
   const std::string_view piece = exchange.body.substr(exchange.sent, size);
   std::memcpy(bytes, piece.data(), piece.size());
   exchange.sent += piece.size();
@@ -102,8 +108,10 @@ int seek_body(void* held, curl_off_t offset, int origin) {
 }
 
 int ask_stop(void* held, curl_off_t, curl_off_t, curl_off_t, curl_off_t) {
-  const Exchange& exchange = *static_cast<Exchange*>(held);
-  return *exchange.stop && (*exchange.stop)() ? 1 : 0;
+  Exchange& exchange = *static_cast<Exchange*>(held);
+  // libcurl's own limit looks at the mean speed of some seconds, so that it takes longer behind a fast beginning.
+  exchange.is_silent = std::chrono::steady_clock::now() - exchange.moved > exchange.silence;
+  return exchange.is_silent || (*exchange.stop && (*exchange.stop)()) ? 1 : 0;
 }
 
 /// Whether another try may have another end.
@@ -122,12 +130,6 @@ bool passes(CURLcode code) {
     case CURLE_AGAIN: return true;
     default: return false;
   }
-}
-
-/// A setting that this libcurl must know.
-template <class Value>
-void set(CURL* handle, CURLoption option, Value value) {
-  if (curl_easy_setopt(handle, option, value) != CURLE_OK) throw std::runtime_error("libcurl refuses a setting");
 }
 
 void add_header(HeaderList& list, const std::string& header) {
@@ -154,9 +156,15 @@ struct S3Line::Impl {
   S3Patience patience;
   Stop stop;
   std::unique_ptr<CURL, FreeHandle> handle;  ///< keeps the connection
+  std::chrono::steady_clock::time_point moved = {};
 
-  void prepare(const S3Request& request, Exchange& exchange, const HeaderList& headers) const {
+  /// Errors: why libcurl refuses a setting; then nothing may be sent.
+  CURLcode prepare(const S3Request& request, Exchange& exchange, const HeaderList& headers) const {
     CURL* const curl = handle.get();
+    CURLcode refused = CURLE_OK;
+    const auto set = [&refused](CURL* on, CURLoption option, auto value) {
+      if (refused == CURLE_OK) refused = curl_easy_setopt(on, option, value);
+    };
     curl_easy_reset(curl);  // keeps the connection
     const std::string place =
         address.origin() + "/" + address.bucket + (request.object.empty() ? "" : "/" + address.folder + request.object);
@@ -192,24 +200,25 @@ struct S3Line::Impl {
       set(curl, CURLOPT_SEEKFUNCTION, seek_body);
       set(curl, CURLOPT_SEEKDATA, &exchange);
     }
+    return refused;
   }
 
   LineFault fault(CURLcode code, const Exchange& exchange) const {
     const std::string where = address.text();
-    if (code == CURLE_ABORTED_BY_CALLBACK) return {cancelled(), false};
+    if (code == CURLE_ABORTED_BY_CALLBACK && !exchange.is_silent) return {cancelled(), false};
     if (!exchange.fault.empty()) return {Error{where, 0, exchange.fault, exchange.kind}, false};
     if (code == CURLE_PEER_FAILED_VERIFICATION)
       return {Error{where, 0,
                     "its certificate is that of another host, or no authority that this computer trusts vouches for it; nothing was sent"},
               false};
     if (code == CURLE_SSL_CACERT_BADFILE) return {Error{keys.authorities, 0, "can't be read as certificates; nothing was sent"}, false};
-    if (code == CURLE_OPERATION_TIMEDOUT) return {Error{where, 0, "it doesn't answer"}, true};
+    if (code == CURLE_OPERATION_TIMEDOUT || exchange.is_silent) return {Error{where, 0, "it doesn't answer"}, true};
     return {Error{where, 0, std::string("the request failed: ") + curl_easy_strerror(code)}, passes(code)};
   }
 };
 
 S3Line::S3Line(VaultAddress address, const VaultSettings& keys, S3Patience patience, Stop stop)
-    : impl_(new Impl{std::move(address), keys, patience, std::move(stop), nullptr}) {
+    : impl_(new Impl{std::move(address), keys, patience, std::move(stop), nullptr, {}}) {
   impl_->handle.reset(curl_easy_init());
   if (!impl_->handle) throw std::bad_alloc();
 }
@@ -218,6 +227,7 @@ S3Line& S3Line::operator=(S3Line&&) noexcept = default;
 S3Line::~S3Line() = default;
 
 const VaultAddress& S3Line::address() const { return impl_->address; }
+std::chrono::steady_clock::time_point S3Line::moved() const { return impl_->moved; }
 
 LineResult<S3Answer> S3Line::ask(const S3Request& request, std::string& content, std::size_t max_bytes) {
   Exchange exchange;
@@ -226,13 +236,16 @@ LineResult<S3Answer> S3Line::ask(const S3Request& request, std::string& content,
   exchange.body = request.body;
   exchange.content = &content;
   exchange.max_bytes = max_bytes;
+  exchange.silence = impl_->patience.silence;
   if (request.object.empty()) content.clear();  // a list may differ from that of the earlier try
   exchange.begun = request.method == S3Request::Method::get ? content.size() : 0;
   HeaderList headers;
   // libcurl 7.88 takes the payload's hash for the signature from here, so that the store compares the body with it.
   add_header(headers, "x-amz-content-sha256: " + request.body_hash.hex());
-  impl_->prepare(request, exchange, headers);
-  const CURLcode code = curl_easy_perform(impl_->handle.get());
+  if (!impl_->keys.session_token.empty()) add_header(headers, "x-amz-security-token: " + impl_->keys.session_token);
+  CURLcode code = impl_->prepare(request, exchange, headers);
+  if (code == CURLE_OK) code = curl_easy_perform(impl_->handle.get());
+  impl_->moved = exchange.moved;
   if (code != CURLE_OK) return tl::unexpected(impl_->fault(code, exchange));
   long status = 0;
   curl_easy_getinfo(impl_->handle.get(), CURLINFO_RESPONSE_CODE, &status);

@@ -47,6 +47,8 @@ class S3Line {
   ~S3Line();
 
   const VaultAddress& address() const;
+  /// When the last byte of the last request came or went, or when that began.
+  std::chrono::steady_clock::time_point moved() const;
 
   /// What a get brings is put behind `content`, which holds what an earlier try brought of the same object: only the rest is asked for. It
   /// grows also where the line is cut. Errors: the line; more than `max_bytes` would be in `content`.

@@ -19,11 +19,12 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMaxSettings = std::size_t{64} << 10;
 constexpr std::size_t kMaxValue = 2000;
+constexpr std::size_t kMaxSession = 8192;
 constexpr std::array<std::string_view, 4> kKeys{"access_key_id", "region", "secret_access_key", "vault"};
 
 /// What can stand in a header and a signature.
-bool is_header_text(std::string_view text) {
-  return !text.empty() && text.size() <= kMaxValue && std::all_of(text.begin(), text.end(), [](char c) { return c > ' ' && c < 0x7f; });
+bool is_header_text(std::string_view text, std::size_t max_bytes = kMaxValue) {
+  return !text.empty() && text.size() <= max_bytes && std::all_of(text.begin(), text.end(), [](char c) { return c > ' ' && c < 0x7f; });
 }
 
 std::optional<std::string> environment(const char* name) {
@@ -96,13 +97,18 @@ Result<VaultSettings> read_vault_settings(const std::optional<fs::path>& given) 
   if (!region) region = environment("AWS_DEFAULT_REGION");
   if (region) settings.region = std::move(*region);
   if (auto key = environment("AWS_ACCESS_KEY_ID")) settings.access_key_id = std::move(*key);
-  if (auto secret = environment("AWS_SECRET_ACCESS_KEY")) settings.secret_access_key = std::move(*secret);
+  if (auto secret = environment("AWS_SECRET_ACCESS_KEY")) {
+    settings.secret_access_key = std::move(*secret);
+    settings.session_token = environment("AWS_SESSION_TOKEN").value_or("");
+  }
   if (auto authorities = environment("AWS_CA_BUNDLE")) settings.authorities = std::move(*authorities);
   const std::string where = usual ? ", or access_key_id and secret_access_key in " + usual->string() : "";
   if (settings.access_key_id.empty() || settings.secret_access_key.empty())
     return fail("", "there are no keys for the vault; set AWS_ACCESS_KEY_ID and AWS_SECRET_ACCESS_KEY" + where);
   for (const std::string* value : {&settings.access_key_id, &settings.secret_access_key, &settings.region})
     if (!is_header_text(*value)) return fail("", "keys and region of a vault can't have blanks or signs beyond ASCII");
+  if (!settings.session_token.empty() && !is_header_text(settings.session_token, kMaxSession))
+    return fail("", "AWS_SESSION_TOKEN can't have blanks, signs beyond ASCII, or more than " + std::to_string(kMaxSession) + " bytes");
   return settings;
 }
 

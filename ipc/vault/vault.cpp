@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <charconv>
+#include <ctime>
 #include <map>
 #include <utility>
 
 #include "base/progress.h"
+#include "ipc/store/utf8.h"
 #include "ipc/vault/objects.h"
 
 namespace prismesh::ipc::vault {
@@ -13,6 +15,10 @@ namespace prismesh::ipc::vault {
 namespace {
 
 using Method = S3Request::Method;
+
+constexpr std::size_t kMaxListed = 200'000;
+constexpr std::size_t kMaxRegion = 100;
+constexpr std::size_t kMaxKey = 1024;  // S3 has no longer ones
 
 constexpr int kWrongBytesMax = 3;  // in a row: then it isn't chance
 constexpr std::size_t kMaxListing = std::size_t{16} << 20;
@@ -41,8 +47,14 @@ bool is_for_a_while(unsigned status) { return status == 408 || status == 429 || 
 
 /// Refusals of a body that came otherwise than it was sent.
 bool is_about_the_body(const std::string& code) {
-  return code == "BadDigest" || code == "XAmzContentSHA256Mismatch" || code == "IncompleteBody" || code == "RequestTimeout" ||
-         code == "InvalidDigest";
+  return code == "BadDigest" || code == "XAmzContentSHA256Mismatch" || code == "InvalidDigest";
+}
+
+/// 400, for a line that was cut or silent: no fault of what was asked.
+bool is_about_the_line(const S3Answer& answer) {
+  if (answer.status != 400) return false;
+  const std::string code = parse_refusal(answer.body).code;
+  return code == "IncompleteBody" || code == "RequestTimeout";
 }
 
 }  // namespace
@@ -58,21 +70,33 @@ Error Vault::refusal(const S3Answer& answer) const {
   if (said.code == "NoSuchBucket")
     return told("there is no bucket '" + line_.address().bucket + "'; make it there first, or correct the address");
   if (said.code == "RequestTimeTooSkewed") return told("this computer's clock differs from the store's; set it");
-  if (answer.status == 301 || answer.status == 307 || said.code == "AuthorizationHeaderMalformed")
-    return told("the bucket has another region or address (" + words + "); set AWS_REGION, or correct the address");
-  if (is_for_a_while(answer.status)) return told("can't answer now (" + words + ")");
+  if (answer.status == 301 || answer.status == 307 || said.code == "AuthorizationHeaderMalformed") {
+    const std::string region(answer.header("x-amz-bucket-region"));
+    const bool is_shown = !region.empty() && region.size() <= kMaxRegion && store::is_plain_utf8(region);
+    return told("the bucket has another region or address (" + words + "); set AWS_REGION" + (is_shown ? "=" + region : "") +
+                ", or correct the address" + (said.endpoint.empty() ? "" : ": its host is " + said.endpoint));
+  }
+  if (is_for_a_while(answer.status) || is_about_the_line(answer)) return told("can't answer now (" + words + ")");
   if (answer.status == 401 || answer.status == 403) return told("refuses these keys, or they may not do this (" + words + ")");
   return told(words);
 }
 
 Result<S3Answer> Vault::ask(const S3Request& request, std::string& content, std::size_t max_bytes) {
-  for (;;) {
-    const std::size_t before = content.size();
+  // A store that knows no parts begins anew each time: only what no try brought before is progress.
+  for (std::size_t most = content.size();;) {
     LineResult<S3Answer> answer = line_.ask(request, content, max_bytes);
-    if (answer && is_for_a_while(answer->status)) answer = tl::unexpected(LineFault{refusal(*answer), true});
-    if (answer || content.size() > before) retrying_.line_is_good();
+    if (answer && answer->status == 416 && !content.empty()) {
+      content.clear();  // all bytes had come, but not the answer's end
+      answer = tl::unexpected(LineFault{refusal(*answer), true});
+    }
+    if (answer && (is_for_a_while(answer->status) || is_about_the_line(*answer)))
+      answer = tl::unexpected(LineFault{refusal(*answer), true});
+    const bool is_progress = content.size() > most;
+    most = std::max(most, content.size());
+    if (answer || is_progress) retrying_.line_is_good();
     if (answer) return std::move(*answer);
-    if (const Result<void> waited = retrying_.wait_after(answer.error()); !waited) return fail(waited.error());
+    const Result<void> waited = retrying_.wait_after(answer.error(), line_.moved());
+    if (!waited) return fail(waited.error());
   }
 }
 
@@ -139,7 +163,12 @@ Result<std::vector<ListedObject>> Vault::list(std::string_view beginning) {
     if (some->next == next && !next.empty()) return fail(name(), "lists the same objects again and again");
     next = std::move(some->next);
     for (ListedObject& object : some->objects) {
-      if (!object.key.starts_with(folder)) continue;
+      if (!object.key.starts_with(folder) || object.key.size() > kMaxKey) continue;
+      if (all.size() == kMaxListed)
+        return fail(Error{
+            name(), 0,
+            "has more than " + std::to_string(kMaxListed) + " objects named " + std::string(beginning) + "..; " + "no vault is so large",
+            ErrorKind::over_limit});
       object.key.erase(0, folder.size());
       all.push_back(std::move(object));
     }
@@ -147,7 +176,8 @@ Result<std::vector<ListedObject>> Vault::list(std::string_view beginning) {
   return all;
 }
 
-Result<std::vector<store::ModelRecord>> models(Vault& vault) {
+Result<std::vector<store::ModelRecord>> models(Vault& vault, std::string_view preferred) {
+  const std::int64_t now_s = std::time(nullptr);
   const Result<std::vector<ListedObject>> there = vault.list(kModels);
   if (!there) return fail(there.error());
   const Result<std::vector<ListedObject>> names = vault.list(kNames);
@@ -156,7 +186,9 @@ Result<std::vector<store::ModelRecord>> models(Vault& vault) {
   for (const ListedObject& object : *names)
     if (auto record = record_of_object(object.key)) {
       store::ModelRecord& known = newest[record->model];
-      if (known.name.empty() || known.when_s < record->when_s) known = std::move(*record);
+      const bool is_preferred = record->name == preferred, has_preferred = known.name == preferred;
+      if (known.name.empty() || (is_preferred != has_preferred ? is_preferred : is_newer_name(*record, known, now_s)))
+        known = std::move(*record);
     }
   std::vector<store::ModelRecord> all;
   for (const ListedObject& object : *there)

@@ -36,7 +36,7 @@ class Vault {
   Result<std::optional<std::string>> get_unchecked(const std::string& object, std::size_t max_bytes);
   /// The store compares the bytes with their hash.
   Result<void> put(const std::string& object, std::string_view bytes, const store::ContentHash& hash);
-  /// All objects whose names begin so.
+  /// All objects whose names begin so. Errors: over_limit: more than 200,000.
   Result<std::vector<ListedObject>> list(std::string_view beginning);
 
   bool is_stopped() const { return retrying_.is_stopped(); }
@@ -51,7 +51,8 @@ class Vault {
   Retrying retrying_;
 };
 
-/// All models that are there, the newest first. One without a name that can be read has none, and the time 0.
-Result<std::vector<store::ModelRecord>> models(Vault& vault);
+/// All models that are there, the newest first, with their newest names; one that also has the name `preferred` has that. One without a
+/// name that can be read has none, and the time 0.
+Result<std::vector<store::ModelRecord>> models(Vault& vault, std::string_view preferred = {});
 
 }  // namespace prismesh::ipc::vault

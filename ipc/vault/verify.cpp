@@ -8,6 +8,8 @@ namespace prismesh::ipc::vault {
 
 namespace {
 
+constexpr int kReadTries = 3;
+
 class Verification {
  public:
   Verification(Vault& vault, const Progress& progress) : vault_(vault), progress_(progress) {}
@@ -35,6 +37,14 @@ class Verification {
   Result<Read> read(const std::string& object, std::size_t max_bytes, const std::optional<store::ContentHash>& hash) {
     if (vault_.is_stopped() || (progress_ && !progress_(fraction_))) return fail(cancelled());
     Result<std::optional<std::string>> content = vault_.get_unchecked(object, max_bytes);
+    // A line may change what comes: only what is wrong each time is damage.
+    const auto is_wrong = [&] { return content && *content && hash && store::sha256(**content) != *hash; };
+    for (int tries = 1; tries < kReadTries && is_wrong(); ++tries) {
+      Result<std::optional<std::string>> again = vault_.get_unchecked(object, max_bytes);
+      if (!again && again.error().kind != ErrorKind::over_limit) return fail(again.error());
+      if (!again || !*again) break;  // a store may put away what it found damaged itself: the first answer tells more
+      content = std::move(again);
+    }
     if (!content) {
       if (content.error().kind == ErrorKind::over_limit) return Read{std::nullopt, "is longer than it was"};
       return fail(content.error());
@@ -59,11 +69,12 @@ class Verification {
       return {};
     }
     for (const store::SetFile& file : manifest->files) {
-      auto known = files_.find(file.hash);
+      const std::pair is(file.hash, file.bytes);  // a manifest may name a hash with wrong sizes
+      auto known = files_.find(is);
       if (known == files_.end()) {
         Result<std::vector<VaultFault>> faults = faults_of(file);
         if (!faults) return fail(faults.error());
-        known = files_.emplace(file.hash, std::move(*faults)).first;
+        known = files_.emplace(is, std::move(*faults)).first;
       }
       for (const VaultFault& fault : known->second) note(model, file.path, fault.object, fault.fault);
     }
@@ -102,7 +113,7 @@ class Verification {
   Vault& vault_;
   const Progress& progress_;
   Verified found_;
-  std::map<store::ContentHash, std::vector<VaultFault>> files_;  ///< those that were read
+  std::map<std::pair<store::ContentHash, std::uint64_t>, std::vector<VaultFault>> files_;  ///< those that were read
   double fraction_ = 0;
 };
 

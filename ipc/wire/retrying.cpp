@@ -32,10 +32,10 @@ void Retrying::line_is_good() {
   pause_ = patience_.first_pause;
 }
 
-Result<void> Retrying::wait_after(const LineFault& fault) {
+Result<void> Retrying::wait_after(const LineFault& fault, std::optional<std::chrono::steady_clock::time_point> silent_since) {
   if (!fault.may_pass) return fail(fault.error);
   const auto now = std::chrono::steady_clock::now();
-  if (!cut_since_) cut_since_ = now;
+  if (!cut_since_) cut_since_ = silent_since.value_or(now);
   if (now - *cut_since_ + pause_ > patience_.whole) return fail(fault.error);
   if (!paused(std::exchange(pause_, std::min(2 * pause_, kPauseMax)), stop_)) return fail(cancelled());
   return {};

@@ -19,8 +19,9 @@ class Retrying {
  public:
   Retrying(RetryPatience patience, Stop stop);
 
-  /// Waits before another try. Errors: `fault` doesn't pass, the patience is over, the user stopped it.
-  Result<void> wait_after(const LineFault& fault);
+  /// Waits before another try. `silent_since`: nothing came or went since then; nothing: since now. Errors: `fault` doesn't pass, the
+  /// patience is over, the user stopped it.
+  Result<void> wait_after(const LineFault& fault, std::optional<std::chrono::steady_clock::time_point> silent_since = std::nullopt);
   /// Something came or went: what follows is another cut.
   void line_is_good();
   bool is_stopped() const { return stop_ && stop_(); }

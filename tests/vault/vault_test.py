@@ -262,8 +262,9 @@ class Vault(unittest.TestCase):
         self.push()
         large = self.files["parts/notes.k"]
         second = sha256(large[PIECE : 2 * PIECE])
-        for part, words in ((f"/pieces/{second}", f"gives other bytes for pieces/{second} than its name says"), (f"/models/{self.model}", "gives other bytes for models/"), ("/lists/", "parts/notes.k isn't t")):
-            self.line.begin(lambda request, part=part: ("flip answer", 40) if part in request.path else None)
+        for part, place, words in ((f"/pieces/{second}", 40, f"gives other bytes for pieces/{second} than its name says"), (f"/models/{self.model}", 40, "gives other bytes for models/"),
+                                   ("/lists/", 5, "push the model again with --resend")):
+            self.line.begin(lambda request, part=part, place=place: ("flip answer", place) if part in request.path else None)
             self.refused(words, "fetch", self.model, "-o", "back")
             self.assertFalse((self.folder / "back").exists())
         begun = [path for path in (self.folder / "back.fetching" / "sha256").rglob("*") if path.is_file() and path.name == sha256(large)]
@@ -278,6 +279,20 @@ class Vault(unittest.TestCase):
         self.line.begin(lambda request: ("flip request", 9) if request.method == "PUT" else None)
         self.refused("the line changes them", "push", self.source / "main.k")
         self.assertEqual(self.objects(), [])
+
+    def test_files_outside_the_folder(self):
+        (self.folder / "deck").mkdir()
+        (self.folder / "private.k").write_bytes(b"*KEYWORD\n$ private\n*END\n")
+        deck = self.folder / "deck" / "main.k"
+        deck.write_text("*KEYWORD\n*INCLUDE\n../private.k\n*END\n")
+        self.refused("includes files outside its folder: ", "push", deck)
+        (self.folder / "deck" / "link.k").symlink_to("../private.k")
+        deck.write_text("*KEYWORD\n*INCLUDE\nlink.k\n*END\n")
+        self.refused("link.k; nothing was sent. Send them too with --outside", "push", deck)
+        self.assertEqual((self.line.requests, self.objects()), ([], []))
+        self.assertEqual(self.done("push", deck, "--outside")["files"], 2)
+        deck.write_text("*KEYWORD\n*INCLUDE\n../private.k\n*END\n")
+        self.assertEqual(self.done("push", deck, "--outside")["files"], 2)
 
     # --- stores that fail ---
 

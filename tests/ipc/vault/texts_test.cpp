@@ -7,6 +7,7 @@
 #include "ipc/vault/address.h"
 #include "ipc/vault/objects.h"
 #include "ipc/vault/s3_answers.h"
+#include "ipc/vault/s3_line.h"
 #include "ipc/vault/settings.h"
 
 namespace prismesh::ipc::vault {
@@ -36,9 +37,12 @@ TEST(VaultAddress, refuses_others) {
     ASSERT_FALSE(address) << text;
     EXPECT_THAT(address.error().message, HasSubstr("s3+https://HOST/BUCKET")) << text;
   }
-  const Result<VaultAddress> secret = parse_vault_address("s3+https://me:hidden@h/b");
-  ASSERT_FALSE(secret);
-  EXPECT_THAT(secret.error().text(), Not(HasSubstr("hidden")));
+  for (const char* text : {"s3+https://me:hidden@h/b", "https://me:hidden@h/b", "s3://me:hidden@h/b", "me:hidden@h/b"}) {
+    const Result<VaultAddress> secret = parse_vault_address(text);
+    ASSERT_FALSE(secret) << text;
+    EXPECT_THAT(secret.error().text(), HasSubstr("has no credentials in it"));
+    EXPECT_THAT(secret.error().text(), Not(HasSubstr("hidden")));
+  }
 }
 
 TEST(VaultAddress, knows_this_computer) {
@@ -72,6 +76,22 @@ TEST(VaultObjects, have_names_that_are_read_again) {
   record.files = 3;
   EXPECT_EQ(record_of_object(name_object(record)), record);
   const std::string object = name_object(record);
+  record.name = std::string(200, 'x');
+  const std::string long_object = name_object(record);
+  EXPECT_EQ(record_of_object(long_object), record);
+  for (std::size_t at = 0; at < long_object.size();) {
+    const std::size_t end = std::min(long_object.find('/', at), long_object.size());
+    EXPECT_LE(end - at, 255u);
+    at = end + 1;
+  }
+  std::string unsplit = long_object;
+  unsplit.erase(unsplit.rfind('/'), 1);
+  EXPECT_FALSE(record_of_object(unsplit));
+  for (const char* name : {"abcdef", "20261128", "", "a\nb"}) {
+    store::ModelRecord other = record;
+    other.name = name;
+    EXPECT_FALSE(record_of_object(name_object(other))) << name;
+  }
   EXPECT_EQ(object.find_first_not_of("0123456789abcdefnms/-"), std::string::npos);
   for (const std::string& other :
        std::vector<std::string>{object + "0", object.substr(1), object + "zz", object + "1b", "names/" + record.model.hex(),
@@ -129,6 +149,21 @@ TEST(S3Answers, refuse_what_is_no_list) {
         "ListBucketResult>",
         "<ListBucketResult><IsTruncated>false</IsTruncated><Contents><Size>1</Size></Contents></ListBucketResult>"})
     EXPECT_FALSE(parse_object_list(text)) << text;
+  const auto going_on = [](std::size_t size) {
+    return parse_object_list("<ListBucketResult><IsTruncated>true</IsTruncated><NextContinuationToken>" + std::string(size, 'a') +
+                             "</NextContinuationToken></ListBucketResult>");
+  };
+  EXPECT_TRUE(going_on(4096));
+  EXPECT_THAT(going_on(4097).error().message, HasSubstr("in more than 4096 bytes where its list goes on"));
+}
+
+TEST(S3Line, a_request_that_cannot_be_made_is_a_fault) {
+  S3Line line({true, "127.0.0.1", 1, "b", ""}, {std::nullopt, "r", "k", "hidden", ""}, {}, {});
+  std::string none;
+  const LineResult<S3Answer> answer = line.ask({S3Request::Method::get, "", "a=" + std::string(9'000'000, 'a'), {}}, none, 0);
+  ASSERT_FALSE(answer);
+  EXPECT_FALSE(answer.error().may_pass);
+  EXPECT_THAT(answer.error().error.text(), HasSubstr("the request failed"));
 }
 
 TEST(S3Answers, tell_refusals_that_can_be_shown) {
