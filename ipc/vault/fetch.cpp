@@ -1,6 +1,7 @@
 #include "ipc/vault/fetch.h"
 
 #include <algorithm>
+#include <ctime>
 #include <set>
 #include <utility>
 
@@ -90,12 +91,14 @@ class VaultFetch {
 
 /// With what people call it, if that can be listed.
 Result<store::ModelRecord> named_model(Vault& vault, const store::ContentHash& model) {
+  const std::int64_t now_s = std::time(nullptr);
   store::ModelRecord named;
   named.model = model;
   const Result<std::vector<ListedObject>> names = vault.list(std::string(kNames) + model.hex() + "/");
   if (!names && is_cancelled(names.error())) return fail(names.error());
   for (const ListedObject& object : names ? *names : std::vector<ListedObject>())
-    if (auto record = record_of_object(object.key); record && record->when_s >= named.when_s) named = std::move(*record);
+    if (auto record = record_of_object(object.key); record && (named.name.empty() || is_newer_name(*record, named, now_s)))
+      named = std::move(*record);
   return named;
 }
 
