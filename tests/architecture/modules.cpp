@@ -123,7 +123,8 @@ const std::vector<Module>& modules() {
         "kiosk/tools/parts",     "kiosk/tools/history", "kiosk/tools/view",       "kiosk/calibration",      "kiosk/display/kms",
         "kiosk/display/x11",     "kiosk/setup",         "drivers/settings"}},
 
-      {"cli", {"ipc/device", "ipc/import", "ipc/model", "ipc/pen", "ipc/remote", "ipc/vault", "mesh/batch", "mesh/measure", "drivers/settings"}},
+      {"cli",
+       {"ipc/device", "ipc/import", "ipc/model", "ipc/pen", "ipc/remote", "ipc/vault", "mesh/batch", "mesh/measure", "drivers/settings"}},
       {"python", {"mesh/report"}},
   };
   return kModules;
