@@ -57,12 +57,12 @@ Result<std::optional<toolkit::ExhibitionOptions>> exhibition_of(const drivers::s
 
 /// Calibrates the display that the window covers. Returns the profile's file, or nothing.
 Result<std::optional<std::filesystem::path>> calibrate(const AppOptions& options, display::Window& window, Station& station,
-                                                       const stereo::Profile& profile) {
+                                                       const stereo::Profile& profile, std::int64_t idle_ns = -1) {
   Result<SaveTo> save_to = usual_place(options.config);
   if (!save_to) return fail(save_to.error());
   auto calibrator = Calibrator::create(window, station, profile, std::move(*save_to));
   if (!calibrator) return fail(calibrator.error());
-  return (*calibrator)->run();
+  return (*calibrator)->run(idle_ns);
 }
 
 Result<void> run_calibration(const AppOptions& options, const WindowOptions& where, const StationOptions& what) {
@@ -136,7 +136,7 @@ Result<Settled> settle(const AppOptions& options) {
 
 /// The station as it is set up; nothing: this machine isn't set up from the kiosk, or says nothing now.
 std::optional<ipc::StationSetup> ask_for_setup(const AppOptions& options) {
-  constexpr std::chrono::seconds kPatience{3};
+  constexpr std::chrono::seconds kPatience{1};  // less than the watchdog's
   const std::filesystem::path socket = ipc::setup_socket_path(options.runtime_dir);
   std::error_code none;
   if (!std::filesystem::exists(socket, none)) return std::nullopt;
@@ -163,7 +163,9 @@ Result<SetupScreen::End> run_setup(const AppOptions& options, display::Window& w
   setup.profile = settled.profile;
   if (what.exhibition) setup.idle_ns = kExhibitionIdleNs;
   if (const auto usual = drivers::settings::usual_files(); usual.size() > 1) setup.own_settings = usual.back();
-  setup.calibrate = [&](const stereo::Profile& profile) { return calibrate(options, window, **station, profile); };
+  setup.calibrate = [&](const stereo::Profile& profile, std::int64_t idle_ns) {
+    return calibrate(options, window, **station, profile, idle_ns);
+  };
   auto screen = SetupScreen::create(window, **station, std::move(setup));
   if (!screen) return fail(screen.error());
   return (*screen)->run();
@@ -193,6 +195,7 @@ Result<void> run_in_window(const AppOptions& options, Settled settled) {
     if (Result<void> run = WindowedKiosk(**window, **station).run(); !run) return run;
     const toolkit::ToolContext& context = (*station)->editor.context();
     if (!context.anew) return {};
+    supervisor::tell_alive();
     if (context.sets_up) setup = ask_for_setup(options);
     (*window)->set_clipboard({});
     (*window)->set_fullscreen(options.fullscreen);

@@ -60,8 +60,13 @@ Result<std::unique_ptr<Calibrator>> Calibrator::create(display::Window& window, 
   return calibrator;
 }
 
-Result<std::optional<std::filesystem::path>> Calibrator::run() {
-  began_ns_ = laid_out_ns_ = station_.clock.now_ns();
+bool is_by_hand(const display::WindowEvent& event) {
+  return std::holds_alternative<display::KeyChanged>(event) || std::holds_alternative<display::ButtonChanged>(event) ||
+         std::holds_alternative<display::PointerMoved>(event) || std::holds_alternative<display::TextTyped>(event);
+}
+
+Result<std::optional<std::filesystem::path>> Calibrator::run(std::int64_t idle_ns) {
+  began_ns_ = laid_out_ns_ = input_ns_ = station_.clock.now_ns();
   while (!left_ && !saved_) {
     if (Result<void> taken = take_events(); !taken) return fail(taken.error());
     if (Result<void> turned = station_.turn(); !turned) return fail(turned.error());
@@ -72,6 +77,7 @@ Result<std::optional<std::filesystem::path>> Calibrator::run() {
     if (Result<void> drawn = draw(); !drawn) return fail(drawn.error());
     window_.present();
     watch_.shown();
+    if (idle_ns >= 0 && station_.clock.now_ns() - input_ns_ > idle_ns) left_ = true;
     wait();
   }
   station_.devices.release_mask();
@@ -106,6 +112,7 @@ Result<void> Calibrator::take_events() {
   if (!events) return fail(events.error());
   for (const display::WindowEvent& event : *events) {
     gui_->feed(event);
+    if (is_by_hand(event)) input_ns_ = station_.clock.now_ns();
     if (const auto* moved = std::get_if<display::PointerMoved>(&event)) pointer_ = input::Pixel(moved->x, moved->y);
     if (std::holds_alternative<display::PointerLeft>(event)) pointer_.reset();
     if (std::holds_alternative<display::CloseRequested>(event)) left_ = true;

@@ -26,14 +26,18 @@ struct SaveTo {
 /// The user's own folder and settings, or the settings file given. Errors: no home folder is known.
 Result<SaveTo> usual_place(const std::optional<std::filesystem::path>& settings);
 
+/// Somebody did it, and not the window.
+bool is_by_hand(const display::WindowEvent& event);
+
 class Calibrator {
  public:
   /// Needs the window's GL context. Errors: the driver refuses a shader; the font is missing.
   static Result<std::unique_ptr<Calibrator>> create(display::Window& window, Station& station, const drivers::display::Profile& start,
                                                     SaveTo save_to);
 
-  /// Runs until the calibration is saved or left. Returns the profile's file, or nothing. Errors: the display is gone.
-  Result<std::optional<std::filesystem::path>> run();
+  /// Runs until the calibration is saved or left, or nothing was touched for `idle_ns` (negative: it waits for ever). Returns the profile's
+  /// file, or nothing. Errors: the display is gone.
+  Result<std::optional<std::filesystem::path>> run(std::int64_t idle_ns);
 
  private:
   Calibrator(display::Window& window, Station& station, drivers::display::Profile start, SaveTo save_to)
@@ -58,7 +62,7 @@ class Calibrator {
   std::optional<calibration::PatternPainter> painter_;
   std::optional<panels::Gui> gui_;
   std::optional<calibration::Wizard> wizard_;
-  std::int64_t began_ns_ = 0;
+  std::int64_t began_ns_ = 0, input_ns_ = 0;
   std::int64_t laid_out_ns_ = 0;
   std::string trouble_;
   std::string traced_;

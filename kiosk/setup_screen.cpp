@@ -13,6 +13,7 @@
 #include "drivers/settings/settings.h"
 #include "ipc/setup/client.h"
 #include "ipc/setup/own_addresses.h"
+#include "kiosk/calibrator.h"
 #include "kiosk/tools/files/shelf.h"
 
 namespace prismesh::kiosk {
@@ -26,11 +27,6 @@ constexpr int kSetupBeatMs = 40, kSetupRestMs = 500;
 
 /// Between two tries to get a pairing code.
 constexpr std::int64_t kCodeNs = 1'000'000'000;
-
-bool is_by_hand(const display::WindowEvent& event) {
-  return std::holds_alternative<display::KeyChanged>(event) || std::holds_alternative<display::ButtonChanged>(event) ||
-         std::holds_alternative<display::PointerMoved>(event) || std::holds_alternative<display::TextTyped>(event);
-}
 
 }  // namespace
 
@@ -65,7 +61,7 @@ setup::Facts SetupScreen::facts() const {
 
 Result<SetupScreen::End> SetupScreen::run() {
   input_ns_ = laid_out_ns_ = station_.clock.now_ns();
-  while (!end_) {
+  while (!end_ || pending_.valid()) {  // what is asked for is answered before the window goes
     if (Result<void> taken = take_events(); !taken) return fail(taken.error());
     station_.devices.turn();  // not the document's: a large one would cost, and nothing of it is shown
     station_.look();
@@ -147,11 +143,13 @@ Result<void> SetupScreen::act(const SetupAction& action) {
 
 /// One thing at a time: what the page wants, and the page to be kept.
 void SetupScreen::ask() {
-  if (pending_.valid()) return;
+  if (pending_.valid() || end_) return;
   if (std::exchange(next_, false)) {
     if (std::optional<ipc::SetupRequest> request = guide_.next()) return send(std::move(*request), true);
   }
   ask_for_code();
+  if (guide_.wants_clock() && std::exchange(clock_asked_, true) == false) return send(ipc::GetSetup{}, false);
+  if (!guide_.wants_clock()) clock_asked_ = false;
   if (calibrated_) return send(ipc::SetCalibration{*std::exchange(calibrated_, std::nullopt)}, false);
   const std::string page(setup::name_of(guide_.page()));
   if (options_.station.due && page != kept_ && !guide_.finished()) {
@@ -190,6 +188,7 @@ void SetupScreen::take_answer() {
     if (!answer) guide_.calibrated("The kiosk has the calibration, but not the station's settings: " + answer.error().text());
     return station_.devices.reload();
   }
+  if (const auto* now = answer ? std::get_if<ipc::StationSetup>(&*answer) : nullptr) return guide_.set_clock(*now);
   if (!of_page_) return;  // a page that isn't kept costs a few keys after a power cut
   const bool chooses = guide_.page() == Page::profile;
   if (!answer) station_.trace.line("setup refused " + answer.error().text());
@@ -209,13 +208,18 @@ void SetupScreen::profile_changed() {
 }
 
 Result<void> SetupScreen::calibrate() {
+  const std::int64_t began_ns = station_.clock.now_ns();
   gui_.reset();  // the calibration has one of its own, and there is one at a time
-  const Result<std::optional<std::filesystem::path>> saved = options_.calibrate(profile_);
+  const Result<std::optional<std::filesystem::path>> saved = options_.calibrate(profile_, options_.idle_ns);
   if (!saved) return fail(saved.error());
   Result<panels::Gui> gui = panels::Gui::create();
   if (!gui) return fail(gui.error());
   gui_ = std::move(*gui);
-  input_ns_ = station_.clock.now_ns();
+  // Where nothing was touched for long the calibration has ended by itself, and so does this: the next hand may be a visitor's.
+  if (options_.idle_ns >= 0 && !*saved && station_.clock.now_ns() - began_ns > options_.idle_ns)
+    end_ = End::left;
+  else
+    input_ns_ = station_.clock.now_ns();
   guide_.calibrated(*saved ? "The calibration is saved." : "Nothing was saved.");
   if (*saved) take_calibration(**saved);
   return {};

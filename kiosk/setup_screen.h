@@ -31,7 +31,8 @@ struct SetupOptions {
   /// The user's own settings file. It goes before the station's, so where it exists a profile that is chosen here goes into it too.
   std::filesystem::path own_settings{};
   /// Calibrates a display of this profile. Returns the file of the new one, if it was saved. Errors: the display is gone.
-  std::function<Result<std::optional<std::filesystem::path>>(const stereo::Profile&)> calibrate{};
+  /// It ends by itself after so long without any input (negative: never).
+  std::function<Result<std::optional<std::filesystem::path>>(const stereo::Profile&, std::int64_t idle_ns)> calibrate{};
 };
 
 class SetupScreen {
@@ -78,6 +79,7 @@ class SetupScreen {
   bool calibrates_ = false;                ///< what is asked is to take a calibration over
   bool of_page_ = false;                   ///< what is asked comes from the page, and not from here
   std::optional<std::string> calibrated_;  ///< text of a profile that the station is to have
+  bool clock_asked_ = false;               ///< for the clock page
   bool next_ = false;                      ///< the page is to go on
   std::string kept_;                       ///< the page that is kept
   std::int64_t code_asked_ns_ = 0;         ///< when a pairing code was asked for last, since it is wanted; 0: not yet

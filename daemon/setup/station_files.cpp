@@ -26,8 +26,10 @@ namespace prismesh::setup {
 namespace {
 
 constexpr std::string_view kSettings = "etc/prismesh/prismesh.toml";
-/// Before the image's own 80-wired.network: the first file that fits counts.
+/// Before the image's own 70-wired.network: the first file that fits counts.
 constexpr std::string_view kNetwork = "etc/systemd/network/70-prismesh-setup.network";
+/// What the image's own file stands in for at a start, where settings didn't work. It goes before all others.
+constexpr std::string_view kFallback = "run/systemd/network/00-prismesh.network";
 constexpr std::string_view kNameServers = "etc/resolv.conf";
 constexpr std::string_view kOwnNameServers = "# Of the station's set-up: a fixed address.\n";
 /// Holds the page on which the first set-up goes on. The first boot makes it.
@@ -80,7 +82,8 @@ std::string zone_of(const std::filesystem::path& link) {
   const std::string target = std::filesystem::read_symlink(link, none).string();
   const std::string_view marker = "zoneinfo/";
   const std::size_t at = target.find(marker);
-  return at == std::string::npos ? "UTC" : target.substr(at + marker.size());
+  const std::string zone = at == std::string::npos ? "UTC" : target.substr(at + marker.size());
+  return zone == "Etc/UTC" ? "UTC" : zone;
 }
 
 Result<drivers::settings::StationSettings> settings_of(const std::string& text, const std::filesystem::path& file) {
@@ -145,6 +148,9 @@ ipc::StationSetup StationFiles::read() const {
   }
   station.zone = zone_of(at("etc/localtime"));
   station.zones = zones_in(at(kZones));
+  // An older name of a zone isn't in the list; it stays chosen all the same.
+  if (ipc::check_zone(station.zone) && !std::ranges::binary_search(station.zones, station.zone))
+    station.zones.insert(std::ranges::upper_bound(station.zones, station.zone), station.zone);
   station.clock_is_kept = std::filesystem::exists(at("run/systemd/timesync/synchronized"), none);
   ::setenv("TZ", (":" + at("etc/localtime").string()).c_str(), 1);  // NOLINT(concurrency-mt-unsafe): the program has one thread
   ::tzset();
@@ -177,6 +183,7 @@ Result<void> StationFiles::set_network(const ipc::SetNetwork& network) const {
     for (const std::string& server : network.dns) text += "nameserver " + server + "\n";
     if (Result<void> written = write_whole(servers, text); !written) return written;
   }
+  ::unlink(at(kFallback).c_str());                      // new settings are tried anew
   if (network.dhcp) return remove_whole(at(kNetwork));  // then the image's own file counts
   return write_whole(at(kNetwork), network_text(network));
 }

@@ -12,7 +12,7 @@
 namespace prismesh::kiosk::setup {
 namespace {
 
-constexpr std::array<std::string_view, 8> kPageNames{"name", "network", "profile", "calibration", "pairing", "zone", "clock", "done"};
+constexpr std::array<std::string_view, 8> kPageNames{"name", "network", "profile", "calibration", "zone", "clock", "pairing", "done"};
 constexpr std::size_t kLongestText = 80;
 
 struct ProfileWords {
@@ -90,7 +90,7 @@ void Guide::enter(Page page) {
   trouble_.clear();
   calibration_.clear();
   code_.clear();
-  shows_code_ = network_set_ = false;
+  shows_code_ = network_set_ = clock_known_ = typed_ = false;
   asked_.reset();
   switch (page) {
     case Page::name: fields_ = {{"name", "Name", station_.name, "", Pad::letters}}; break;
@@ -219,6 +219,7 @@ void Guide::type(std::string_view text) {
   Field& field = fields_[focus_];
   if (field.text.size() + text.size() > kLongestText) return;
   field.text += text;
+  typed_ = true;
   field.trouble.clear();
   if (page_ == Page::zone) filter_zones();
 }
@@ -229,6 +230,7 @@ void Guide::erase() {
   const auto continues = [&] { return !field.text.empty() && (static_cast<unsigned char>(field.text.back()) & 0xc0) == 0x80; };
   while (continues()) field.text.pop_back();
   if (!field.text.empty()) field.text.pop_back();
+  typed_ = true;
   field.trouble.clear();
   if (page_ == Page::zone) filter_zones();
 }
@@ -285,10 +287,10 @@ std::optional<ipc::SetupRequest> Guide::request() const {
       const std::string chosen = choices()[chosen_].label;
       return other(is_built_in(chosen) && chosen != facts_.profile, ipc::SetProfile{chosen});
     }
-    case Page::pairing: return other((chosen_ == 1) != station_.pairing, ipc::SetPairing{chosen_ == 1});
+    // Also where it is so already: after a power cut between the setting and the service both are made to agree.
+    case Page::pairing: return ipc::SetPairing{chosen_ == 1};
     case Page::zone: return other(!zones_.empty() && zones_[chosen_] != station_.zone, ipc::SetZone{zones_.empty() ? "" : zones_[chosen_]});
-    case Page::clock:
-      return other(fields_[0].text != station_.date || fields_[1].text != station_.time, ipc::SetClock{fields_[0].text, fields_[1].text});
+    case Page::clock: return other(typed_, ipc::SetClock{fields_[0].text, fields_[1].text});
     case Page::done: return ipc::FinishSetup{};
     case Page::calibration: return std::nullopt;
   }
@@ -350,6 +352,18 @@ void Guide::answered(const Result<void>& done) {
   } else {
     go(1);
   }
+}
+
+void Guide::set_clock(const ipc::StationSetup& now) {
+  station_.date = now.date;
+  station_.time = now.time;
+  station_.clock_is_kept = now.clock_is_kept;
+  if (page_ != Page::clock || asked_) return;
+  clock_known_ = true;
+  if (now.clock_is_kept) return go(1);
+  if (typed_) return;
+  fields_[0].text = now.date;
+  fields_[1].text = now.time;
 }
 
 void Guide::take_profile(const std::string& name) {

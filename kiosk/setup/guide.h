@@ -15,7 +15,8 @@
 
 namespace prismesh::kiosk::setup {
 
-enum class Page : std::uint8_t { name, network, profile, calibration, pairing, zone, clock, done };
+/// In their order. Pairing comes after the clock: what it gives is good for a time.
+enum class Page : std::uint8_t { name, network, profile, calibration, zone, clock, pairing, done };
 /// As it is kept over a power cut.
 std::string_view name_of(Page page);
 
@@ -86,6 +87,11 @@ class Guide {
   /// Whether that was done: then the next page is shown. Errors stand at the field that they name.
   void answered(const Result<void>& done);
 
+  /// The clock page is shown, and it isn't known what the clock says now: the zone may be another, and a server may have answered.
+  bool wants_clock() const { return page_ == Page::clock && !clock_known_; }
+  /// What the clock says now. One that a server keeps isn't set by hand: then the next page is shown.
+  void set_clock(const ipc::StationSetup& now);
+
   /// A pairing code is to be shown, and there is none yet.
   bool wants_code() const { return page_ == Page::pairing && shows_code_ && code_.empty(); }
   void set_code(std::vector<std::string> words) { code_ = std::move(words); }
@@ -116,6 +122,8 @@ class Guide {
   std::vector<std::string> code_;
   bool shows_code_ = false;
   bool network_set_ = false;  ///< on this page
+  bool clock_known_ = false;  ///< on this page
+  bool typed_ = false;        ///< on this page, into a field
   std::optional<ipc::SetupRequest> asked_;
   bool finished_ = false;
 };

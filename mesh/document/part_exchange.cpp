@@ -77,7 +77,7 @@ class NamedOfPart {
  public:
   /// `ids`: those of the deck, and those that added ones come from.
   NamedOfPart(const Document& document, Referred referred, std::vector<std::int64_t> ids)
-      : document_(document), references_(*document.deck->references), referred_(referred), ids_(std::move(ids)), unread_(*document.deck) {}
+      : references_(*document.deck->references), referred_(referred), ids_(std::move(ids)), unread_(*document.deck) {}
 
   struct Naming {
     std::vector<std::uint32_t> sets;     ///< that name it and not all others, ascending
@@ -120,7 +120,6 @@ class NamedOfPart {
     return names_all_[referrer] = deck::all_named_by(references_, referred_, ids_, referrer);
   }
 
-  const Document& document_;
   const References& references_;
   Referred referred_;
   std::vector<std::int64_t> ids_;

@@ -180,10 +180,10 @@ void at_rest(benchmark::State& state) {
 }
 /// Shells of 0.9, each a part of its own, in a grid of 1. Argument: 0 turning as they are, 1 turning with levels of detail, 2 at rest.
 void many_parts(benchmark::State& state) {
-  constexpr std::uint32_t kSide = 317;
+  constexpr std::uint32_t kPartsAcross = 317;
   const auto source = std::make_shared<test::TestSource>();
-  for (std::uint32_t part = 0; part < kSide * kSide; ++part) {
-    const mesh::Vec3 at(part % kSide, part / kSide, 0);
+  for (std::uint32_t part = 0; part < kPartsAcross * kPartsAcross; ++part) {
+    const mesh::Vec3 at(part % kPartsAcross, part / kPartsAcross, 0);
     const std::uint32_t first = source->add_node(at);
     for (const mesh::Vec3& to : {mesh::Vec3(0.9, 0, 0), mesh::Vec3(0.9, 0.9, 0), mesh::Vec3(0, 0.9, 0)}) source->add_node(at + to);
     source->add_shell(first, first + 1, first + 2, first + 3, part);

@@ -219,7 +219,9 @@ TEST(ExhibitionShow, survives_any_text) {
       if (text.empty()) break;
     }
     const auto show = parse_show(text, "x");
-    if (!show) EXPECT_FALSE(show.error().message.empty());
+    if (!show) {
+      EXPECT_FALSE(show.error().message.empty());
+    }
   }
 }
 

@@ -227,6 +227,25 @@ TEST_F(SetupTest, settings_that_cannot_be_read_are_told_and_stay) {
   EXPECT_EQ(text("etc/prismesh/prismesh.toml"), broken);
 }
 
+TEST_F(SetupTest, tells_a_zone_that_the_list_has_not) {
+  std::filesystem::create_symlink("/usr/share/zoneinfo/Etc/UTC", root_ / "etc/localtime");  // as Debian has it
+  EXPECT_EQ(state().zone, "UTC");
+  EXPECT_EQ(state().zones, (std::vector<std::string>{"Europe/Berlin", "UTC"}));
+  std::filesystem::remove(root_ / "etc/localtime");
+  std::filesystem::create_symlink("../usr/share/zoneinfo/Europe/Oslo", root_ / "etc/localtime");
+  EXPECT_EQ(state().zone, "Europe/Oslo");
+  EXPECT_EQ(state().zones, (std::vector<std::string>{"Europe/Berlin", "Europe/Oslo", "UTC"})) << "it can stay as it is";
+}
+
+TEST_F(SetupTest, new_network_settings_end_a_fallback) {
+  write("run/systemd/network/00-prismesh.network", "[Match]\nType=ether\n");
+  ipc::SetNetwork network;
+  network.dhcp = false;
+  network.address = "10.0.0.2/24";
+  EXPECT_EQ(ask(network), "");
+  EXPECT_FALSE(std::filesystem::exists(root_ / "run/systemd/network/00-prismesh.network")) << "it would hide them";
+}
+
 TEST_F(SetupTest, sets_the_zone_by_a_link) {
   EXPECT_EQ(ask(ipc::SetZone{"Europe/Berlin"}), "");
   EXPECT_EQ(std::filesystem::read_symlink(root_ / "etc/localtime"), "../usr/share/zoneinfo/Europe/Berlin");
