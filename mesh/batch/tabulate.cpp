@@ -115,38 +115,38 @@ std::string table_csv(const Table& table) {
 }
 
 std::string table_json(const Table& table) {
-  using Json = nlohmann::ordered_json;
-  const auto text_of = [](const Json& json) { return json.dump(1, ' ', false, Json::error_handler_t::replace); };
-  const Json head{{"study", table.name},
-                  {"plan", table.plan_file},
-                  {"length_unit", table.length_unit.empty() ? Json(nullptr) : Json(table.length_unit)},
-                  {"variants", table.rows.size()},
-                  {"done", table.count(RowState::done)},
-                  {"refused", table.count(RowState::refused)},
-                  {"failed", table.count(RowState::failed)},
-                  {"missing", table.count(RowState::missing)}};
+  using Ordered = nlohmann::ordered_json;
+  const auto text_of = [](const Ordered& json) { return json.dump(1, ' ', false, Ordered::error_handler_t::replace); };
+  const Ordered head{{"study", table.name},
+                     {"plan", table.plan_file},
+                     {"length_unit", table.length_unit.empty() ? Ordered(nullptr) : Ordered(table.length_unit)},
+                     {"variants", table.rows.size()},
+                     {"done", table.count(RowState::done)},
+                     {"refused", table.count(RowState::refused)},
+                     {"failed", table.count(RowState::failed)},
+                     {"missing", table.count(RowState::missing)}};
   std::string out = text_of(head);
   out.resize(out.size() - 2);  // without the brace, on a line of its own
   out += ",\n \"rows\": [";
   // row by row: as one object a large study takes several times the memory of its text
   for (const Row& row : table.rows) {
-    Json values = Json::object();
+    Ordered values = Ordered::object();
     for (std::size_t p = 0; p < row.values.size(); ++p)
       std::visit([&](const auto& value) { values[table.parameters[p]] = value; }, row.values[p]);
-    Json entry{
+    Ordered entry{
         {"variant", row.number}, {"state", name(row.state)}, {"deck", row.deck}, {"script", row.script}, {"values", std::move(values)}};
     const auto add = [&](const std::string& field, const std::optional<double>& figure) {
-      entry[field] = figure ? Json(*figure) : Json(nullptr);
+      entry[field] = figure ? Ordered(*figure) : Ordered(nullptr);
     };
     for (const Column& column : columns()) {
       add(std::string(column.name), figure_of(column, row));
       if (column.before != nullptr) add(std::string(column.name) + "_before", figure_before(column, row));
     }
-    entry["reason"] = row.reason.empty() ? Json(nullptr) : Json(row.reason);
-    entry["length_unit"] = row.result ? Json(row.result->length_unit) : Json(nullptr);
+    entry["reason"] = row.reason.empty() ? Ordered(nullptr) : Ordered(row.reason);
+    entry["length_unit"] = row.result ? Ordered(row.result->length_unit) : Ordered(nullptr);
     const std::string file = written_file(row);
-    entry["file"] = file.empty() ? Json(nullptr) : Json(file);
-    entry["notes"] = row.result ? Json(row.result->notes) : Json::array();
+    entry["file"] = file.empty() ? Ordered(nullptr) : Ordered(file);
+    entry["notes"] = row.result ? Ordered(row.result->notes) : Ordered::array();
     entry["key"] = row.key;
     out += &row == table.rows.data() ? "\n  " : ",\n  ";
     for (const char c : text_of(entry)) {
