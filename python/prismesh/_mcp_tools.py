@@ -290,7 +290,10 @@ class Tools:
         if opened.takes_no_edits:
             raise Refused(opened.takes_no_edits)
         edit, inputs = self._with_safe_paths(opened, edit, part_of(progress, 0, 0.5))
-        line = EditList.line_of(edit)  # what can't be written isn't done
+        try:
+            line = EditList.line_of(edit)  # what can't be written isn't done
+        except ValueError:
+            raise Refused("the numbers of an edit must be finite") from None
         report = opened.document.edit(edit, progress=part_of(progress, 0.5, 1) if inputs else progress)
         try:
             opened.edits.keep_inputs(inputs)

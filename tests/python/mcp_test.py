@@ -733,6 +733,17 @@ class Protocol(InFolder):
         with open(there, "rb") as sent:
             self.assertEqual([json.loads(line)["params"]["progress"] for line in sent], [0.2, 0.7, 1.0])
 
+    def test_an_edit_with_a_number_beyond_all(self):
+        client = self.client()
+        client.do("open_deck", path="sheet.k")
+        lift = json.dumps(LIFT).replace("4.125", "1e999", 1)
+        self.assertIn("1e999", lift)
+        client.write(b'{"jsonrpc": "2.0", "id": 9, "method": "tools/call", "params": {"name": "edit", "arguments": {"document": "d1", "edit": ' + lift.encode() + b"}}}")
+        answer = json.loads(client.read())
+        self.assertTrue(answer["result"]["isError"], answer)
+        self.assertIn("finite", answer["result"]["content"][0]["text"])
+        self.assertEqual(client.do("list_edits", document="d1")["edits"], [])
+
     def test_malformed_lines(self):
         seed = random.randrange(1 << 32)
         print(f"seed {seed}", file=sys.stderr)
