@@ -34,7 +34,7 @@ Result<void> run_tool(std::initializer_list<const char*> words) {
   int status = 0;
   while (::waitpid(pid, &status, 0) < 0)
     if (errno != EINTR) return fail(arguments[0], std::strerror(errno));
-  if (status != 0) return fail(arguments[0], "it failed; the journal says why (journalctl -u 'prismesh-setup@*')");
+  if (status != 0) return fail(arguments[0], "it failed, though the setting is written: start the station anew");
   return {};
 }
 

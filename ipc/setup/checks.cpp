@@ -14,9 +14,9 @@
 namespace prismesh::ipc {
 namespace {
 
-constexpr std::size_t kLongestLabel = 63;
-constexpr std::size_t kMostNameServers = 3;
-constexpr std::size_t kLongestZone = 60, kLongestPage = 20, kLongestText = 80;
+constexpr std::size_t kMaxLabel = 63;
+constexpr std::size_t kMaxNameServers = 3;
+constexpr std::size_t kMaxZone = 60, kMaxPage = 20, kMaxText = 80;
 
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
@@ -145,7 +145,7 @@ int number_at(std::string_view text, std::size_t at, std::size_t digits) {
 }
 
 Result<void> check_page(std::string_view page) {
-  const bool word = !page.empty() && page.size() <= kLongestPage && std::ranges::all_of(page, [](char c) { return c >= 'a' && c <= 'z'; });
+  const bool word = !page.empty() && page.size() <= kMaxPage && std::ranges::all_of(page, [](char c) { return c >= 'a' && c <= 'z'; });
   return word ? Result<void>() : fail("page", "a page's name is a word of small letters");
 }
 
@@ -157,7 +157,7 @@ Result<void> check_name(std::string_view name) {
   if (name.find('.') != std::string_view::npos) return wrong("write the name without the domain: letters, digits and hyphens, no points");
   if (!std::ranges::all_of(name, [](char c) { return is_letter(c) || is_digit(c) || c == '-'; }))
     return wrong("a name has letters from a to z, digits and hyphens only");
-  if (name.size() > kLongestLabel) return wrong("a name has at most 63 letters");
+  if (name.size() > kMaxLabel) return wrong("a name has at most 63 letters");
   if (name.front() == '-' || name.back() == '-') return wrong("a name begins and ends with a letter or a digit");
   if (std::ranges::all_of(name, is_digit)) return wrong("a name has at least one letter: digits alone are taken for an address");
   std::string small(name);
@@ -175,7 +175,7 @@ Result<void> check_network(const SetNetwork& network) {
   const Result<Prefixed> own = parse_prefixed(network.address);
   if (!own) return fail(own.error());
   if (Result<void> gateway = check_gateway(network.gateway, *own); !gateway) return gateway;
-  if (network.dns.size() > kMostNameServers) return fail("dns", "at most three name servers are asked");
+  if (network.dns.size() > kMaxNameServers) return fail("dns", "at most three name servers are asked");
   for (const std::string& text : network.dns) {
     const std::optional<Address> server = parse_address(text);
     if (!server) return fail("dns", "write addresses like 192.168.1.1, with a blank between two, or leave it empty");
@@ -193,7 +193,7 @@ Result<void> check_profile(std::string_view profile) {
 Result<void> check_calibration(const std::string& profile) {
   const Result<drivers::display::Profile> read = drivers::display::parse_profile(profile, "calibration");
   if (!read) return fail("calibration", read.error().message);
-  const bool file_name = !read->name.empty() && read->name.size() <= kLongestText &&
+  const bool file_name = !read->name.empty() && read->name.size() <= kMaxText &&
                          std::ranges::all_of(read->name, [](char c) { return is_letter(c) || is_digit(c) || c == '-'; });
   if (!file_name) return fail("calibration", "a profile that becomes a file has a name of letters, digits and hyphens");
   if (check_profile(read->name)) return fail("calibration", "it has the name of a built-in profile");
@@ -202,7 +202,7 @@ Result<void> check_calibration(const std::string& profile) {
 
 Result<void> check_zone(std::string_view zone) {
   const auto wrong = [] { return fail("zone", "a zone is written like Europe/Berlin, or UTC"); };
-  if (zone.empty() || zone.size() > kLongestZone) return wrong();
+  if (zone.empty() || zone.size() > kMaxZone) return wrong();
   for (std::size_t start = 0; start <= zone.size();) {
     const std::size_t end = std::min(zone.find('/', start), zone.size());
     const std::string_view word = zone.substr(start, end - start);

@@ -13,7 +13,7 @@ namespace prismesh::kiosk::setup {
 namespace {
 
 constexpr std::array<std::string_view, 8> kPageNames{"name", "network", "profile", "calibration", "zone", "clock", "pairing", "done"};
-constexpr std::size_t kLongestText = 80;
+constexpr std::size_t kMaxText = 80;
 
 struct ProfileWords {
   std::string_view name, words;
@@ -217,7 +217,7 @@ View Guide::view() const {
 void Guide::type(std::string_view text) {
   if (focus_ >= fields_.size() || (page_ == Page::network && chosen_ == 0) || asked_) return;
   Field& field = fields_[focus_];
-  if (field.text.size() + text.size() > kLongestText) return;
+  if (field.text.size() + text.size() > kMaxText) return;
   field.text += text;
   typed_ = true;
   field.trouble.clear();
